@@ -1,0 +1,266 @@
+//! The command line: what may be asked, and the help texts that explain it.
+//!
+//! Every length is in metres, every force in newtons, every potential in volts, as in the scene files.
+
+use std::path::{Path, PathBuf};
+
+use clap::builder::RangedU64ValueParser;
+use clap::error::ErrorKind;
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+
+const EXAMPLES: &str = "\
+Examples:
+  piezobeam check beam.toml                       is the scene sound, is its solution unique?
+  piezobeam solve beam.toml                       a summary for people
+  piezobeam solve beam.toml --plot beam.svg       ... and one page of pictures
+  piezobeam solve beam.toml --format json | jq .contact.force
+  piezobeam paper --out paper                     the figures of the paper, recomputed
+
+Exit status:
+  0  the solve converged (check, paper, time: all went well)
+  1  the solve did not converge; the best iterate is still reported, marked as such
+  2  bad input: the command line, the scene file, or an output that cannot be written";
+
+const SOLVE: &str = "\
+Examples:
+  piezobeam solve beam.toml --elements 400
+  piezobeam solve beam.toml --samples 101 --format csv --out beam.csv
+  piezobeam solve beam.toml --format json --out beam.json --plot beam.svg --force
+
+Units of the samples: x, bending and stretching in m; slope in m/m; moment in N m; shear and
+axial_force in N; potential in V; electric_displacement in C.
+Bending is positive towards the foundation.
+A field the scene does not have is null in JSON and an empty cell in CSV.";
+
+/// Static equilibrium of a piezoelectric beam, clamped at both ends, on a deformable foundation.
+#[derive(Debug, Parser)]
+#[command(name = "piezobeam", version, about, after_help = EXAMPLES, max_term_width = 110)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Solve a scene and report its fields, contact zones and reactions
+    #[command(after_help = SOLVE)]
+    Solve(SolveArgs),
+    /// Read a scene, say what it contains and whether its solution is known to be unique; solve nothing
+    #[command(after_help = "Example:\n  piezobeam check beam.toml")]
+    Check(CheckArgs),
+    /// Recompute the examples of the paper and draw its figures as SVG files
+    #[command(after_help = "Example:\n  piezobeam paper --out figures --force")]
+    Paper(PaperArgs),
+    /// Measure how long a scene takes to solve
+    #[command(after_help = "Example:\n  piezobeam time beam.toml --elements 10000 --repeat 20 --format json")]
+    Time(TimeArgs),
+}
+
+#[derive(Debug, Args)]
+pub struct SolveArgs {
+    /// Scene file (TOML, SI units)
+    #[arg(value_name = "SCENE.toml")]
+    pub scene: PathBuf,
+    /// Number of elements over the length of the beam [default: what the scene asks for]
+    #[arg(long, value_name = "N", value_parser = elements())]
+    pub elements: Option<usize>,
+    /// Floating-point type of the solve; the report is in f64 in either case
+    #[arg(long, value_enum, value_name = "TYPE", default_value_t = Precision::F64)]
+    pub precision: Precision,
+    /// Stop once the relative residual (no unit) is below this [default: 1e-10 with f64, 1e-5 with f32]
+    #[arg(long, value_name = "TOLERANCE", value_parser = tolerance)]
+    pub stop: Option<f64>,
+    /// Number of points, evenly spaced from 0 to the length, both included, at which fields are reported
+    #[arg(long, value_name = "K", default_value_t = 33,
+          value_parser = RangedU64ValueParser::<usize>::new().range(2..=1_000_000))]
+    pub samples: usize,
+    /// text for people, json with full-precision numbers, csv with one row per sample
+    #[arg(long, value_enum, value_name = "FORMAT", default_value_t = Format::Text)]
+    pub format: Format,
+    /// Write the report to this file instead of standard output
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Draw the solution on one page (beam and foundation, moment, shear, electric fields)
+    #[arg(long, value_name = "FILE.svg", value_parser = svg_path)]
+    pub plot: Option<PathBuf>,
+    /// Replace output files that exist
+    #[arg(long)]
+    pub force: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct CheckArgs {
+    /// Scene file (TOML, SI units)
+    #[arg(value_name = "SCENE.toml")]
+    pub scene: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct PaperArgs {
+    /// Directory for the figures; made if it is not there
+    #[arg(long, value_name = "DIR", default_value = "paper")]
+    pub out: PathBuf,
+    /// Replace output files that exist
+    #[arg(long)]
+    pub force: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct TimeArgs {
+    /// Scene file (TOML, SI units)
+    #[arg(value_name = "SCENE.toml")]
+    pub scene: PathBuf,
+    /// Number of elements over the length of the beam [default: what the scene asks for]
+    #[arg(long, value_name = "N", value_parser = elements())]
+    pub elements: Option<usize>,
+    /// Number of solves to measure, each from the same cold start
+    #[arg(long, value_name = "R", default_value_t = 100,
+          value_parser = RangedU64ValueParser::<usize>::new().range(1..))]
+    pub repeat: usize,
+    /// Floating-point type of the solve
+    #[arg(long, value_enum, value_name = "TYPE", default_value_t = Precision::F64)]
+    pub precision: Precision,
+    /// text for people, json with times in nanoseconds
+    #[arg(long, value_enum, value_name = "FORMAT", default_value_t = TimeFormat::Text)]
+    pub format: TimeFormat,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Precision {
+    F64,
+    F32,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    Text,
+    Json,
+    Csv,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum TimeFormat {
+    Text,
+    Json,
+}
+
+impl Cli {
+    /// Reads the process's arguments; prints the help or the usage error and exits where there is one.
+    pub fn read() -> Self {
+        let cli = Self::parse();
+        match cli.conflict() {
+            Some(message) => Self::command().error(ErrorKind::ArgumentConflict, message).exit(),
+            None => cli,
+        }
+    }
+
+    /// What clap's declarations cannot say: two outputs must be two files, and none may be the scene.
+    fn conflict(&self) -> Option<String> {
+        let Command::Solve(args) = &self.command else {
+            return None;
+        };
+        let same = |a: &Option<PathBuf>, b: Option<&PathBuf>| a.is_some() && a.as_ref() == b;
+        if same(&args.out, args.plot.as_ref()) {
+            return Some("--out and --plot name the same file; give each its own".into());
+        }
+        let scene = Some(&args.scene);
+        if same(&args.out, scene) || same(&args.plot, scene) {
+            return Some("an output names the scene file itself; give another name".into());
+        }
+        None
+    }
+}
+
+fn elements() -> RangedU64ValueParser<usize> {
+    RangedU64ValueParser::new().range(1..=10_000_000)
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value < 1.0 => Ok(value),
+        _ => Err("expected a number between 0 and 1, such as 1e-10".into()),
+    }
+}
+
+fn svg_path(text: &str) -> Result<PathBuf, String> {
+    let path = Path::new(text);
+    match path.extension() {
+        Some(ext) if ext.eq_ignore_ascii_case("svg") => Ok(path.to_owned()),
+        _ => Err("the picture is an SVG file; give it a name that ends in .svg".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn solve(line: &str) -> SolveArgs {
+        match Cli::try_parse_from(line.split_whitespace()).unwrap().command {
+            Command::Solve(args) => args,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    fn refused(line: &str) -> clap::Error {
+        Cli::try_parse_from(line.split_whitespace()).unwrap_err()
+    }
+
+    #[test]
+    fn declarations_are_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn defaults() {
+        let args = solve("piezobeam solve a.toml");
+        assert_eq!((args.samples, args.format, args.force), (33, Format::Text, false));
+        assert_eq!((args.elements, args.precision), (None, Precision::F64));
+        assert_eq!(solve("piezobeam solve a.toml --stop 1e-7").stop, Some(1e-7));
+        let Command::Paper(paper) = Cli::try_parse_from(["piezobeam", "paper"]).unwrap().command else {
+            panic!()
+        };
+        assert_eq!(paper.out, Path::new("paper"));
+        let Command::Time(time) = Cli::try_parse_from(["piezobeam", "time", "a.toml"]).unwrap().command
+        else {
+            panic!()
+        };
+        assert_eq!((time.repeat, time.format), (100, TimeFormat::Text));
+    }
+
+    #[test]
+    fn bad_values_are_usage_errors() {
+        for line in [
+            "piezobeam solve",
+            "piezobeam solve a.toml --samples 1",
+            "piezobeam solve a.toml --samples 1000001",
+            "piezobeam solve a.toml --elements 0",
+            "piezobeam solve a.toml --stop nan",
+            "piezobeam solve a.toml --stop 0",
+            "piezobeam solve a.toml --plot a.png",
+            "piezobeam time a.toml --repeat 0",
+            "piezobeam time a.toml --format csv",
+        ] {
+            assert_eq!(refused(line).exit_code(), 2, "{line}");
+        }
+        let message = refused("piezobeam solve a.toml --plot a.png").to_string();
+        assert!(message.contains("ends in .svg"), "{message}");
+        assert_eq!(refused("piezobeam solve --help").exit_code(), 0);
+    }
+
+    #[test]
+    fn outputs_must_differ() {
+        let conflict = |line: &str| Cli::try_parse_from(line.split_whitespace()).unwrap().conflict();
+        assert!(conflict("piezobeam solve a.toml --out b.svg --plot b.svg").is_some());
+        assert!(conflict("piezobeam solve a.toml --out a.toml --force").is_some());
+        assert!(conflict("piezobeam solve a.toml --out b.json --plot b.svg").is_none());
+    }
+
+    #[test]
+    fn help_carries_examples_and_units() {
+        let mut command = Cli::command();
+        assert!(command.render_long_help().to_string().contains("Exit status:"));
+        let solve = command.find_subcommand_mut("solve").unwrap();
+        let help = solve.render_long_help().to_string();
+        assert!(help.contains("moment in N m") && help.contains("Examples:"));
+    }
+}

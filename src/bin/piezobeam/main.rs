@@ -1,0 +1,135 @@
+//! The command line: read, compute, render, write.
+
+#![allow(unreachable_pub, reason = "modules of a binary: `pub` says what others of them may use")]
+#![allow(clippy::expect_used, reason = "renderers draw into memory, which cannot fail; each place says why")]
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::panic, reason = "a test that panics has failed"))]
+
+mod cli;
+mod model;
+mod output;
+mod paper;
+mod profile;
+mod render;
+mod report;
+mod scene_file;
+mod tasks;
+
+use cli::{CheckArgs, Cli, Command, Format, PaperArgs, SolveArgs, TimeArgs, TimeFormat};
+use indicatif::{ProgressBar, ProgressStyle};
+use report::{Checked, Picture};
+use scene_file::SceneFile;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Points of a picture's curves, whatever is asked for in numbers.
+const PICTURE_SAMPLES: usize = 513;
+
+/// Points among which a summary looks for extremes.
+const TEXT_SAMPLES: usize = 2001;
+
+/// How a run ends: 0 converged, 1 not converged, 2 bad input (as an `Err`).
+type Outcome = Result<bool, Box<dyn std::error::Error>>;
+
+fn main() -> ExitCode {
+    let outcome = match Cli::read().command {
+        Command::Solve(args) => solve(&args),
+        Command::Check(args) => check(&args),
+        Command::Paper(args) => paper(&args),
+        Command::Time(args) => time(&args),
+    };
+    match outcome {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(error) => {
+            eprintln!("piezobeam: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn solve(args: &SolveArgs) -> Outcome {
+    for path in args.out.iter().chain(&args.plot) {
+        output::check(path, args.force)?;
+    }
+    let file = scene_file::read(&args.scene)?;
+    let run = |samples| {
+        let task = tasks::Solve { stop: args.stop, samples };
+        model::with(&file, args.elements, args.precision, task).map_err(|e| file.complaint(&e))
+    };
+    let solved = run(args.samples)?;
+    let converged = solved.report.converged();
+    let picture = picture(&file, solved);
+    let text = match args.format {
+        // Extremes are looked for between the samples asked for, too.
+        Format::Text => render::text::solve(&self::picture(&file, run(args.samples.max(TEXT_SAMPLES))?)),
+        Format::Json => render::json::solve(&picture.report),
+        Format::Csv => render::csv::solve(&picture.report.samples),
+    };
+    let mut files: Vec<(PathBuf, String)> = Vec::new();
+    if let Some(plot) = &args.plot {
+        let page = self::picture(&file, run(PICTURE_SAMPLES)?);
+        files.push((plot.clone(), render::overview::solve(&page)));
+    }
+    match &args.out {
+        Some(path) => files.push((path.clone(), text)),
+        None => output::print(&text)?,
+    }
+    output::write_all(&files, args.force)?;
+    if !converged && args.format != Format::Text {
+        let reason = picture.report.reason.unwrap_or_default();
+        eprintln!("piezobeam: not converged ({}): {reason}", picture.report.status);
+    }
+    Ok(converged)
+}
+
+fn check(args: &CheckArgs) -> Outcome {
+    let file = scene_file::read(&args.scene)?;
+    let (warnings, uniqueness, elements) =
+        model::with(&file, None, cli::Precision::F64, tasks::Check).map_err(|e| file.complaint(&e))?;
+    let checked = Checked {
+        title: format!("{}\n\n{}", file.name, file.describe()),
+        facts: vec![("elements".into(), elements.to_string())],
+        warnings,
+        uniqueness,
+    };
+    output::print(&render::text::check(&checked))?;
+    Ok(true)
+}
+
+fn paper(args: &PaperArgs) -> Outcome {
+    let paper::Paper { table, files, converged } = paper::run(&args.out)?;
+    for (path, _) in &files {
+        output::check(path, args.force)?;
+    }
+    output::make_directory(&args.out)?;
+    output::write_all(&files, args.force)?;
+    output::print(&table)?;
+    Ok(converged)
+}
+
+fn time(args: &TimeArgs) -> Outcome {
+    let file = scene_file::read(&args.scene)?;
+    // On a terminal only, and drawn a few times a second at most: the solves are timed one by one.
+    let bar = ProgressBar::new(args.repeat as u64);
+    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} solves, {eta} left") {
+        bar.set_style(style);
+    }
+    let task = tasks::Time { repeat: args.repeat, progress: &|| bar.inc(1) };
+    let timing = model::with(&file, args.elements, args.precision, task).map_err(|e| file.complaint(&e))?;
+    bar.finish_and_clear();
+    output::print(&match args.format {
+        TimeFormat::Text => render::text::time(&timing),
+        TimeFormat::Json => render::json::time(&timing),
+    })?;
+    Ok(timing.status == report::CONVERGED)
+}
+
+fn picture(file: &SceneFile, solved: tasks::Solved) -> Picture {
+    Picture {
+        title: file.name.clone(),
+        length: file.length,
+        gap: solved.gap,
+        facts: Vec::new(),
+        report: solved.report,
+    }
+}

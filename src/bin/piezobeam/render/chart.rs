@@ -1,0 +1,280 @@
+//! What every picture is made of: an SVG page, a frame with axes, curves, labels.
+//!
+//! The SVG backend rounds coordinates to whole units, so a page is drawn [`FINE`] times too large and shown at its
+//! size through the `viewBox`. Colours are those of Okabe and Ito, told apart with any kind of colour vision.
+
+use std::ops::Range;
+
+use plotters::chart::ChartContext;
+use plotters::coord::Shift;
+use plotters::coord::types::RangedCoordf64;
+use plotters::drawing::DrawingAreaErrorKind;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use super::{Scale, significant};
+
+/// Drawing units per pixel.
+pub const FINE: i32 = 10;
+
+pub const INK: RGBColor = RGBColor(34, 34, 34);
+pub const FAINT: RGBColor = RGBColor(95, 95, 95);
+pub const GRID: RGBColor = RGBColor(226, 226, 226);
+pub const BLUE: RGBColor = RGBColor(0, 114, 178);
+pub const GREEN: RGBColor = RGBColor(0, 158, 115);
+pub const VERMILLION: RGBColor = RGBColor(213, 94, 0);
+pub const PURPLE: RGBColor = RGBColor(204, 121, 167);
+pub const ORANGE: RGBColor = RGBColor(230, 159, 0);
+
+pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+pub type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
+
+/// A white page of `width` by `height` pixels; `name` is its title for browsers and screen readers, plain words.
+pub fn page(name: &'static str, width: i32, height: i32, draw: impl FnOnce(&Area) -> Drawn) -> String {
+    let mut svg = String::new();
+    let size = ((width * FINE) as u32, (height * FINE) as u32);
+    let root = SVGBackend::with_string(&mut svg, size).into_drawing_area();
+    root.fill(&WHITE)
+        .and_then(|()| draw(&root))
+        .and_then(|()| root.present())
+        .expect("drawing into memory cannot fail");
+    drop(root);
+    let drawn = format!("width=\"{}\" height=\"{}\"", size.0, size.1);
+    let shown = format!("width=\"{width}\" height=\"{height}\" role=\"img\"");
+    // Text carries a white outline, so that a label crossed by a line stays readable.
+    let style = format!(
+        "<title>{name}</title>\n<style>text {{ paint-order: stroke; stroke: #fff; stroke-width: {}px; \
+         stroke-linejoin: round }} polyline {{ stroke-linejoin: round }}</style>\n",
+        3 * FINE
+    );
+    let svg = svg.replacen(&drawn, &shown, 1);
+    match svg.split_once('\n') {
+        Some((head, body)) => format!("{head}\n{style}{body}"),
+        None => svg,
+    }
+}
+
+/// A line of text: size in pixels, colour, and which point of the text is at the given place.
+pub fn style(size: i32, color: RGBColor, h: HPos, v: VPos) -> TextStyle<'static> {
+    // The backend divides the size by 1.24 to get the em of the SVG.
+    ("sans-serif", f64::from(size * FINE) * 1.24).into_font().color(&color).pos(Pos::new(h, v))
+}
+
+/// Text with its top left corner at `at` (pixels).
+pub fn words(area: &Area, text: &str, at: (i32, i32), size: i32, color: RGBColor) -> Drawn {
+    let style = style(size, color, HPos::Left, VPos::Top);
+    area.draw_text(&printable(text), &style, (at.0 * FINE, at.1 * FINE))
+}
+
+/// Bold text with its top left corner at `at` (pixels).
+pub fn heading(area: &Area, text: &str, at: (i32, i32), size: i32, color: RGBColor) -> Drawn {
+    let font = ("sans-serif", f64::from(size * FINE) * 1.24).into_font().style(FontStyle::Bold);
+    let style = font.color(&color).pos(Pos::new(HPos::Left, VPos::Top));
+    area.draw_text(&printable(text), &style, (at.0 * FINE, at.1 * FINE))
+}
+
+/// `text` without the control characters that XML forbids.
+fn printable(text: &str) -> String {
+    text.chars()
+        .map(|c| if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') { ' ' } else { c })
+        .collect()
+}
+
+/// At most `most` characters of `text`, the last one an ellipsis if some were left out.
+pub fn shortened(text: &str, most: usize) -> String {
+    match text.char_indices().nth(most) {
+        None => text.to_owned(),
+        Some(_) => text.chars().take(most.saturating_sub(1)).chain(['…']).collect(),
+    }
+}
+
+/// Axes and a title above them; `colour` draws a sample of the line the title names.
+pub struct Frame<'a> {
+    pub title: &'a str,
+    /// A line below the title; empty for none.
+    pub note: String,
+    pub colour: Option<RGBColor>,
+    pub x: Range<f64>,
+    pub y: Range<f64>,
+    pub x_label: &'a str,
+    /// Print the ordinates with their sign changed: for an axis that counts downwards.
+    pub downwards: bool,
+}
+
+/// Room around the plotting area, pixels.
+const LEFT: i32 = 58;
+const RIGHT: i32 = 16;
+const BOTTOM: i32 = 42;
+const TITLE: i32 = 30;
+const NOTE: i32 = 16;
+
+impl Frame<'_> {
+    /// A sentence that compares the scales of a frame with a note, whose axes are lengths.
+    pub fn magnified(&self, area: &Area, along: &Scale, across: &Scale) -> String {
+        let (width, height) = area.dim_in_pixel();
+        let room = |pixels: u32, taken: i32| f64::from(pixels as i32 - taken * FINE);
+        let per_metre = |pixels: f64, range: &Range<f64>, scale: &Scale| {
+            pixels * scale.factor / (range.end - range.start)
+        };
+        let ratio = per_metre(room(height, TITLE + NOTE + BOTTOM), &self.y, across)
+            / per_metre(room(width, LEFT + RIGHT), &self.x, along);
+        format!("Heights are drawn {} times as large as lengths.", significant(ratio, 2))
+    }
+
+    pub fn draw<'a, 'b>(
+        &self,
+        area: &'a Area<'b>,
+    ) -> Result<Chart<'a, 'b>, DrawingAreaErrorKind<std::io::Error>> {
+        let mut left = 12;
+        if let Some(colour) = self.colour {
+            let y = 15 * FINE;
+            let stroke = colour.stroke_width(3 * FINE as u32);
+            area.draw(&PathElement::new([(left * FINE, y), ((left + 20) * FINE, y)], stroke))?;
+            left += 28;
+        }
+        heading(area, self.title, (left, 8), 14, INK)?;
+        if !self.note.is_empty() {
+            words(area, &self.note, (12, 28), 12, FAINT)?;
+        }
+        let top = TITLE + if self.note.is_empty() { 0 } else { NOTE };
+        let mut chart = ChartBuilder::on(area)
+            .margin_top(top * FINE)
+            .margin_right(RIGHT * FINE)
+            .set_label_area_size(LabelAreaPosition::Left, LEFT * FINE)
+            .set_label_area_size(LabelAreaPosition::Bottom, BOTTOM * FINE)
+            .build_cartesian_2d(self.x.clone(), self.y.clone())?;
+        let sign = if self.downwards { -1.0 } else { 1.0 };
+        let (dx, dy) = (self.x.end - self.x.start, self.y.end - self.y.start);
+        let label = |size, colour| style(size, colour, HPos::Left, VPos::Top);
+        chart
+            .configure_mesh()
+            .disable_x_mesh()
+            .bold_line_style(GRID.stroke_width(FINE as u32))
+            .light_line_style(TRANSPARENT)
+            .axis_style(FAINT.stroke_width(FINE as u32))
+            .x_labels(9)
+            .y_labels(((area.dim_in_pixel().1 as i32 / FINE) / 40).max(3) as usize)
+            .set_all_tick_mark_size(4 * FINE)
+            .label_style(label(12, INK))
+            .axis_desc_style(label(12, INK))
+            .x_desc(self.x_label)
+            .x_label_formatter(&|&v| tick(v, dx))
+            .y_label_formatter(&|&v| tick(sign * v, dy))
+            .draw()?;
+        Ok(chart)
+    }
+}
+
+/// A tick's number on an axis of the given span: rounding noise around zero is zero.
+fn tick(value: f64, span: f64) -> String {
+    let value = if value.abs() < 1e-9 * span { 0.0 } else { value };
+    significant(value, 6).replace('-', "−")
+}
+
+/// The range of `values` with `below` and `above` parts of its span added; never so narrow that ticks run out of digits.
+pub fn padded(values: impl IntoIterator<Item = f64>, below: f64, above: f64) -> Range<f64> {
+    let finite = values.into_iter().filter(|v| v.is_finite());
+    let (mut lo, mut hi) =
+        finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)));
+    if lo > hi {
+        (lo, hi) = (0.0, 0.0);
+    }
+    let size = lo.abs().max(hi.abs());
+    let least = if size == 0.0 { 2.0 } else { 1e-3 * size };
+    if hi - lo < least {
+        let middle = 0.5 * (lo + hi);
+        // A value that does not vary is read best against a scale of its own size.
+        let half = if size == 0.0 { 1.0 } else { 0.1 * size };
+        (lo, hi) = (middle - half, middle + half);
+    }
+    let span = hi - lo;
+    lo - below * span..hi + above * span
+}
+
+/// A curve through `points`, broken where a number is not finite.
+pub fn curve(chart: &mut Chart, points: &[(f64, f64)], colour: RGBColor, width: i32) -> Drawn {
+    let stroke = colour.stroke_width((width * FINE) as u32);
+    for run in points.split(|p| !(p.0.is_finite() && p.1.is_finite())) {
+        chart.draw_series(LineSeries::new(thinned(run), stroke))?;
+    }
+    Ok(())
+}
+
+/// No more points than a screen can show: the least and the greatest of each stretch, in their order.
+pub fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    const STRETCHES: usize = 1000;
+    if points.len() <= 2 * STRETCHES {
+        return points.to_vec();
+    }
+    let last = points.len() - 1;
+    let mut kept = vec![0];
+    for stretch in 0..STRETCHES {
+        let indices = stretch * points.len() / STRETCHES..(stretch + 1) * points.len() / STRETCHES;
+        let by = |&i: &usize, &j: &usize| points[i].1.total_cmp(&points[j].1);
+        kept.extend(indices.clone().min_by(by));
+        kept.extend(indices.max_by(by));
+    }
+    kept.push(last);
+    kept.sort_unstable();
+    kept.dedup();
+    kept.into_iter().map(|i| points[i]).collect()
+}
+
+/// A dot at `at` and a label beyond it: above, or below if `below`; moved inwards near the sides of the frame.
+pub fn mark(chart: &mut Chart, at: (f64, f64), text: &str, below: bool, colour: RGBColor) -> Drawn {
+    let x = chart.as_coord_spec().get_x_range();
+    let (h, dx) = match (at.0 - x.start) / (x.end - x.start) {
+        part if part < 0.25 => (HPos::Left, 5),
+        part if part > 0.75 => (HPos::Right, -5),
+        _ => (HPos::Center, 0),
+    };
+    let (v, dy) = if below { (VPos::Top, 6) } else { (VPos::Bottom, -6) };
+    let label = style(12, INK, h, v);
+    let text = printable(text).replace('-', "−");
+    chart.draw_series([EmptyElement::at(at)
+        + Circle::new((0, 0), 4 * FINE, colour.filled())
+        + Text::new(text, (dx * FINE, dy * FINE), label)])?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges() {
+        assert_eq!(padded([0.0, 0.0], 0.0, 0.0), -1.0..1.0);
+        assert_eq!(padded([], 0.0, 0.0), -1.0..1.0);
+        assert_eq!(padded([5.0, f64::NAN], 0.0, 0.0), 4.5..5.5);
+        assert_eq!(padded([0.0, 10.0], 0.1, 0.2), -1.0..12.0);
+    }
+
+    #[test]
+    fn thinning_keeps_ends_and_peaks() {
+        let mut points: Vec<_> = (0..100_000).map(|i| (f64::from(i), 0.0)).collect();
+        points[77_777].1 = 1.0;
+        let kept = thinned(&points);
+        assert!(kept.len() <= 2002 && kept.contains(&(77_777.0, 1.0)));
+        assert_eq!((kept[0].0, kept[kept.len() - 1].0), (0.0, 99_999.0));
+        assert!(kept.is_sorted_by(|a, b| a.0 < b.0));
+    }
+
+    #[test]
+    fn a_page_is_xml_with_a_size() {
+        let svg = page("test", 200, 100, |area| words(area, "<a>\u{1}&", (1, 1), 12, INK));
+        let xml = roxmltree::Document::parse(&svg).unwrap();
+        let root = xml.root_element();
+        assert_eq!(root.attribute("width"), Some("200"));
+        assert_eq!(root.attribute("viewBox"), Some("0 0 2000 1000"));
+        assert!(xml.descendants().any(|n| n.text().is_some_and(|t| t.trim() == "<a> &")));
+    }
+
+    #[test]
+    fn small_words() {
+        assert_eq!(tick(-1e-17, 1.0), "0");
+        assert_eq!(tick(-0.25, 1.0), "−0.25");
+        assert_eq!(shortened("abcdef", 4), "abc…");
+        assert_eq!(shortened("abcd", 4), "abcd");
+    }
+}

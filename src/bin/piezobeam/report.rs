@@ -1,0 +1,136 @@
+//! What a run has to say, as plain data: filled once by the command, read by every renderer.
+//!
+//! The names and their order are the JSON contract. All quantities are in SI units; bending and transverse forces
+//! are positive towards the foundation. A number that is not finite is written as `null`.
+
+use serde::Serialize;
+
+/// The status of a solve that met its stopping test.
+pub const CONVERGED: &str = "converged";
+
+/// The result of `solve`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Report {
+    /// [`CONVERGED`], or a short name of how the iteration ended instead.
+    pub status: String,
+    /// Why it did not converge, in a sentence.
+    pub reason: Option<String>,
+    /// Newton steps, all stages and meshes together.
+    pub iterations: usize,
+    /// Elements visited by all sweeps: the work done.
+    pub element_visits: u64,
+    pub elements: usize,
+    /// Relative residual of the reported solution.
+    pub residual: f64,
+    pub warnings: Vec<String>,
+    pub samples: Samples,
+    /// `None` where the scene has no foundation.
+    pub contact: Option<Contact>,
+    pub uniqueness: Uniqueness,
+    pub resultants: Resultants,
+    /// Floating-point type of the solve: `f64` or `f32`.
+    pub precision: String,
+}
+
+/// The fields at the points `x`; `None` for a field the scene does not have.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Samples {
+    /// m
+    pub x: Vec<f64>,
+    /// xi, m, positive towards the foundation.
+    pub bending: Option<Vec<f64>>,
+    /// xi', m/m
+    pub slope: Option<Vec<f64>>,
+    /// C xi'', N m
+    pub moment: Option<Vec<f64>>,
+    /// (C xi'')', N
+    pub shear: Option<Vec<f64>>,
+    /// u, m
+    pub stretching: Option<Vec<f64>>,
+    /// q, V
+    pub potential: Option<Vec<f64>>,
+    /// sigma, N
+    pub axial_force: Option<Vec<f64>>,
+    /// D integrated over the section, C
+    pub electric_displacement: Option<Vec<f64>>,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Contact {
+    /// Intervals `[a, b]` where the beam presses the foundation, m, in increasing order.
+    pub zones: Vec<[f64; 2]>,
+    /// Integral of the contact pressure, N; positive: the foundation is pressed.
+    pub force: f64,
+}
+
+/// The sufficient condition for uniqueness; a margin is its left side over its right side: it holds above 1. `None`
+/// without conduction, where the condition holds whatever the numbers.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Uniqueness {
+    pub certified: bool,
+    pub margin_bending: Option<f64>,
+    pub margin_electric: Option<f64>,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Resultants {
+    pub left: Reaction,
+    pub right: Reaction,
+    /// J
+    pub bending_energy: f64,
+    /// What is left of loads, contact and reactions together, relative to the sum of their sizes (no unit).
+    pub equilibrium_error: f64,
+}
+
+/// What a clamp exerts on the beam.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Reaction {
+    /// N, positive towards the foundation.
+    pub force: f64,
+    /// C xi'', N m
+    pub moment: f64,
+}
+
+/// What `solve` shows to people: the report and what the scene adds to it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Picture {
+    pub report: Report,
+    pub title: String,
+    /// m
+    pub length: f64,
+    /// The gap s at the points `report.samples.x`, m; `None` where the scene has no foundation.
+    pub gap: Option<Vec<f64>>,
+    /// What to know about the scene: name and value, the value with its unit.
+    pub facts: Vec<(String, String)>,
+}
+
+/// The result of `check`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Checked {
+    pub title: String,
+    pub facts: Vec<(String, String)>,
+    pub warnings: Vec<String>,
+    pub uniqueness: Uniqueness,
+}
+
+/// The result of `time`; all times are nanoseconds per solve.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Timing {
+    pub status: String,
+    pub elements: usize,
+    pub iterations: usize,
+    pub element_visits: u64,
+    pub precision: String,
+    pub repeat: usize,
+    pub best_ns: f64,
+    pub median_ns: f64,
+    pub worst_ns: f64,
+    /// Memory of the solver.
+    pub bytes_per_element: usize,
+}
+
+impl Report {
+    pub fn converged(&self) -> bool {
+        self.status == CONVERGED
+    }
+}

@@ -1,0 +1,146 @@
+//! What the commands do with a scene: solve it, check it, time it.
+
+use crate::model::Task;
+use crate::report::{Contact, Reaction, Report, Resultants, Samples, Timing, Uniqueness};
+use piezobeam::{Error, Fields, HeapWorkspace, Model, Problem, Real, Settings, Solution, Status};
+use std::time::Instant;
+
+/// A solved scene with its fields at uniform points, and the gap there.
+pub struct Solved {
+    pub report: Report,
+    pub gap: Option<Vec<f64>>,
+}
+
+/// Solve, and sample the fields at `samples` uniform points, ends included.
+pub struct Solve {
+    /// `None`: the library's default.
+    pub stop: Option<f64>,
+    pub samples: usize,
+}
+
+impl Task for Solve {
+    type Output = Solved;
+    fn run<T: Real, M: Model<T>>(self, problem: Problem<'_, T, M>) -> Result<Solved, Error> {
+        let mut memory = HeapWorkspace::new();
+        let solution = problem.solve(&mut memory, &settings::<T>(self.stop))?;
+        Ok(solved(&solution, self.samples))
+    }
+}
+
+/// Warnings and the uniqueness condition. The scene is sampled, as it is before a solve, and solved, as some
+/// warnings are of the solution.
+pub struct Check;
+
+impl Task for Check {
+    type Output = (Vec<String>, Uniqueness, usize);
+    fn run<T: Real, M: Model<T>>(self, problem: Problem<'_, T, M>) -> Result<Self::Output, Error> {
+        let mut memory = HeapWorkspace::new();
+        let solution = problem.solve(&mut memory, &Settings::default())?;
+        let warnings = solution.warnings().iter().map(ToString::to_string).collect();
+        Ok((warnings, uniqueness(&solution), solution.report().elements))
+    }
+}
+
+/// Time cold solves: the scene is sampled and memory allocated before.
+pub struct Time<'p> {
+    pub repeat: usize,
+    pub progress: &'p dyn Fn(),
+}
+
+impl Task for Time<'_> {
+    type Output = Timing;
+    fn run<T: Real, M: Model<T>>(self, problem: Problem<'_, T, M>) -> Result<Timing, Error> {
+        let mut memory = HeapWorkspace::new();
+        let mut prepared = problem.prepare(&mut memory)?;
+        let settings = Settings::default();
+        let mut report = prepared.solve(&settings)?;
+        let mut nanoseconds = Vec::with_capacity(self.repeat);
+        for _ in 0..self.repeat {
+            let start = Instant::now();
+            report = prepared.solve(&settings)?;
+            nanoseconds.push(start.elapsed().as_secs_f64() * 1e9);
+            (self.progress)();
+        }
+        nanoseconds.sort_by(f64::total_cmp);
+        let at = |i: usize| nanoseconds.get(i).copied().unwrap_or(0.0);
+        let n = nanoseconds.len();
+        Ok(Timing {
+            status: report.status.name().into(),
+            elements: report.elements,
+            iterations: report.iterations,
+            element_visits: report.element_visits as u64,
+            precision: core::any::type_name::<T>().into(),
+            repeat: n,
+            best_ns: at(0),
+            median_ns: 0.5 * (at(n.saturating_sub(1) / 2) + at(n / 2)),
+            worst_ns: at(n.saturating_sub(1)),
+            bytes_per_element: HeapWorkspace::<T, M>::BYTES_PER_ELEMENT,
+        })
+    }
+}
+
+fn settings<T: Real>(stop: Option<f64>) -> Settings<T> {
+    let default = Settings::default();
+    Settings { stop: stop.map_or(default.stop, T::of), ..default }
+}
+
+fn uniqueness<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Uniqueness {
+    let found = solution.uniqueness();
+    Uniqueness {
+        certified: found.certified,
+        margin_bending: found.margin_bending.map(Real::f64),
+        margin_electric: found.margin_electric.map(Real::f64),
+    }
+}
+
+fn solved<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>, samples: usize) -> Solved {
+    let length = solution.scene().length();
+    let last = samples.max(2) - 1;
+    let fields: Vec<Fields<T>> = (0..=last)
+        .map(|i| {
+            let share = T::of(i as f64 / last as f64);
+            solution.at(if i == last { length } else { length * share })
+        })
+        .collect();
+    let column = |get: fn(&Fields<T>) -> T| fields.iter().map(|f| get(f).f64()).collect::<Vec<_>>();
+    let optional = |get: fn(&Fields<T>) -> Option<T>| {
+        fields.iter().map(|f| get(f).map(Real::f64)).collect::<Option<Vec<_>>>()
+    };
+    let found = solution.resultants();
+    let report = solution.report();
+    let gap = optional(|f| f.gap);
+    let status = report.status;
+    let report = Report {
+        status: status.name().into(),
+        reason: (status != Status::Converged).then(|| status.to_string()),
+        iterations: report.iterations,
+        element_visits: report.element_visits as u64,
+        elements: report.elements,
+        residual: report.residual.f64(),
+        warnings: solution.warnings().iter().map(ToString::to_string).collect(),
+        samples: Samples {
+            x: column(|f| f.x),
+            bending: Some(column(|f| f.bending)),
+            slope: Some(column(|f| f.slope)),
+            moment: Some(column(|f| f.moment)),
+            shear: Some(column(|f| f.shear)),
+            stretching: optional(|f| f.stretching),
+            potential: optional(|f| f.potential),
+            axial_force: optional(|f| f.axial_force),
+            electric_displacement: optional(|f| f.electric_displacement),
+        },
+        contact: gap.as_ref().map(|_| Contact {
+            zones: solution.zones().iter().map(|z| z.map(Real::f64)).collect(),
+            force: found.contact_force.f64(),
+        }),
+        uniqueness: uniqueness(solution),
+        resultants: Resultants {
+            left: Reaction { force: found.left_force.f64(), moment: found.left_moment.f64() },
+            right: Reaction { force: found.right_force.f64(), moment: found.right_moment.f64() },
+            bending_energy: found.bending_energy.f64(),
+            equilibrium_error: found.equilibrium_error.f64(),
+        },
+        precision: core::any::type_name::<T>().into(),
+    };
+    Solved { report, gap }
+}

@@ -1,0 +1,226 @@
+//! Cubics on the unit interval: the penetration and the potential inside an element, and their roots.
+//!
+//! The local coordinate t runs from 0 at an element's *right* node to 1 at its left one, because there
+//! the relative unknowns give the coefficients without a difference of nodal values (see [`crate::sweep`]).
+
+use crate::real::Real;
+use arrayvec::ArrayVec;
+
+/// c0 + c1 t + c2 t^2 + c3 t^3 on 0 <= t <= 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Cubic<T>(pub [T; 4]);
+
+/// Where a cubic lies against a level on all of [0, 1].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Side {
+    /// Nowhere above the level.
+    Below,
+    /// Everywhere above the level.
+    Above,
+    /// Undecided by the control values: roots have to be looked for.
+    Both,
+}
+
+impl<T: Real> Cubic<T> {
+    /// The cubic with values `right`, `left` at t = 0, 1 and derivatives `right_slope`, `left_slope` in t.
+    #[inline(always)]
+    pub(crate) fn hermite(right: T, right_slope: T, left: T, left_slope: T) -> Self {
+        let (two, three) = (T::of(2.0), T::of(3.0));
+        let rise = left - right;
+        Self([
+            right,
+            right_slope,
+            three * rise - two * right_slope - left_slope,
+            right_slope + left_slope - two * rise,
+        ])
+    }
+
+    /// Value at t.
+    #[inline(always)]
+    pub fn at(&self, t: T) -> T {
+        let [c0, c1, c2, c3] = self.0;
+        c0 + t * (c1 + t * (c2 + t * c3))
+    }
+
+    /// Derivative in t.
+    #[inline(always)]
+    pub fn slope(&self, t: T) -> T {
+        let [_, c1, c2, c3] = self.0;
+        c1 + t * (T::of(2.0) * c2 + t * (T::of(3.0) * c3))
+    }
+
+    /// Which side of `level` the whole cubic lies on, by the control values of its Bernstein form, whose
+    /// hull holds the curve: `Below` and `Above` are certain, `Both` is not.
+    #[inline(always)]
+    pub(crate) fn side(&self, level: T) -> Side {
+        let [c0, c1, c2, c3] = self.0;
+        let third = T::of(1.0 / 3.0);
+        let b0 = c0 - level;
+        let b1 = b0 + c1 * third;
+        let b2 = b1 + (c1 + c2) * third;
+        let b3 = b0 + c1 + c2 + c3;
+        let zero = T::zero();
+        // Bitwise, so that no branch is taken but on the outcome.
+        if (b0 <= zero) & (b1 <= zero) & (b2 <= zero) & (b3 <= zero) {
+            Side::Below
+        } else if (b0 > zero) & (b1 > zero) & (b2 > zero) & (b3 > zero) {
+            Side::Above
+        } else {
+            Side::Both
+        }
+    }
+
+    /// All t strictly inside (0, 1) where the cubic crosses `level` (changes its sign), ascending.
+    ///
+    /// The interval is cut at the critical points, so that each part is monotone and holds at most one
+    /// root, which bisection-safeguarded Newton steps find to the last digit. A double root that does not
+    /// change the sign is no crossing and is not reported. At most three roots; no failure: a cubic that is
+    /// not finite has none.
+    #[inline(always)]
+    pub(crate) fn crossings(&self, level: T) -> ArrayVec<T, 3> {
+        if self.side(level) == Side::Both { self.search(level) } else { ArrayVec::new() }
+    }
+
+    #[inline(never)]
+    fn search(&self, level: T) -> ArrayVec<T, 3> {
+        let mut roots = ArrayVec::new();
+        let shifted = Cubic([self.0[0] - level, self.0[1], self.0[2], self.0[3]]);
+        let mut from = T::zero();
+        let mut from_value = shifted.at(from);
+        for to in shifted.turning_points().into_iter().chain([T::one()]) {
+            let to_value = shifted.at(to);
+            if (from_value < T::zero()) != (to_value < T::zero())
+                && from_value.is_finite()
+                && to_value.is_finite()
+            {
+                let root = shifted.root_between(from, to, from_value < T::zero());
+                if root > T::zero() && root < T::one() && !roots.is_full() {
+                    roots.push(root);
+                }
+            }
+            (from, from_value) = (to, to_value);
+        }
+        roots
+    }
+
+    /// Zeros of the derivative inside (0, 1), ascending.
+    fn turning_points(&self) -> ArrayVec<T, 2> {
+        let [_, c1, c2, c3] = self.0;
+        // c1 + 2 c2 t + 3 c3 t^2 = 0, scaled so that the discriminant neither over- nor underflows.
+        let size = c1.abs().max(c2.abs()).max(c3.abs());
+        let mut points = ArrayVec::new();
+        if size == T::zero() || !size.is_finite() {
+            return points;
+        }
+        let (a, half_b, c) = (T::of(3.0) * (c3 / size), c2 / size, c1 / size);
+        let discriminant = half_b * half_b - a * c;
+        if discriminant <= T::zero() {
+            return points;
+        }
+        let q = -(half_b + discriminant.sqrt().copysign(half_b));
+        let (first, second) = (q / a, c / q);
+        let mut keep = |t: T| {
+            if t > T::zero() && t < T::one() {
+                points.push(t);
+            }
+        };
+        if first <= second {
+            keep(first);
+            keep(second);
+        } else {
+            keep(second);
+            keep(first);
+        }
+        points
+    }
+
+    /// The root in [low, high], where the cubic is monotone and changes its sign.
+    fn root_between(&self, mut low: T, mut high: T, rising: bool) -> T {
+        let mut t = T::of(0.5) * (low + high);
+        // Each step either halves the bracket or is Newton's and at least halves the last step, so that
+        // twice the scalar's digits and range of exponents bound the count; 200 covers both scalars.
+        let mut last_step = high - low;
+        for _ in 0..200 {
+            let value = self.at(t);
+            if (value < T::zero()) == rising {
+                low = t;
+            } else {
+                high = t;
+            }
+            if value == T::zero() {
+                return t;
+            }
+            let newton = t - value / self.slope(t);
+            let step = (newton - t).abs();
+            let next = if newton > low && newton < high && step < T::of(0.5) * last_step {
+                newton
+            } else {
+                T::of(0.5) * (low + high)
+            };
+            last_step = (next - t).abs();
+            if next == t || next <= low || next >= high {
+                return next;
+            }
+            t = next;
+        }
+        t
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::vec;
+    use std::vec::Vec;
+
+    #[test]
+    fn hermite_form_takes_its_end_values() {
+        let cubic = Cubic::hermite(2.0, -1.0, 5.0, 3.0);
+        assert_eq!((cubic.at(0.0), cubic.at(1.0)), (2.0, 5.0));
+        assert_eq!((cubic.slope(0.0), cubic.slope(1.0)), (-1.0, 3.0));
+    }
+
+    #[test]
+    fn three_crossings_are_found_and_touching_is_none() {
+        // (t - 0.2)(t - 0.5)(t - 0.7)
+        let three = Cubic([-0.07, 0.59, -1.4, 1.0]);
+        let roots = three.crossings(0.0);
+        assert_eq!(roots.len(), 3);
+        for (root, want) in roots.iter().zip([0.2_f64, 0.5, 0.7]) {
+            assert!((root - want).abs() < 1e-14);
+        }
+        // (t - 1/2)^2 touches zero.
+        assert!(Cubic([0.25, -1.0, 1.0, 0.0]).crossings(0.0).len() % 2 == 0);
+        assert!(Cubic([f64::NAN, 1.0, 0.0, 0.0]).crossings(0.0).is_empty());
+        assert!(Cubic([0.0; 4]).crossings(0.0).is_empty());
+    }
+
+    proptest! {
+        #[test]
+        fn crossings_are_sign_changes_and_none_is_missed(
+            c in prop::array::uniform4(-1.0_f64..1.0),
+            exponent in prop::sample::select(vec![-300, -150, -20, 0, 20, 150, 300]),
+        ) {
+            let scale = 10f64.powi(exponent);
+            let cubic = Cubic(c.map(|c| c * scale));
+            let roots = cubic.crossings(0.0);
+            prop_assert!(roots.windows(2).all(|w| w[0] <= w[1]));
+            // The naive oracle: signs on a fine grid change as often as there are roots in between.
+            let mut edges = vec![0.0];
+            edges.extend(roots.iter().copied());
+            edges.push(1.0);
+            for part in edges.windows(2) {
+                let inside = |i: i32| part[0] + (part[1] - part[0]) * f64::from(i) / 64.0;
+                let tiny = 1e-14 * scale;
+                let signs: Vec<f64> = (1..64).map(|i| cubic.at(inside(i))).filter(|v| v.abs() > tiny).collect();
+                prop_assert!(signs.windows(2).all(|w| (w[0] > 0.0) == (w[1] > 0.0)));
+            }
+            match cubic.side(0.0) {
+                Side::Below => prop_assert!((0..=64).all(|i| cubic.at(f64::from(i) / 64.0) <= 1e-15 * scale)),
+                Side::Above => prop_assert!((0..=64).all(|i| cubic.at(f64::from(i) / 64.0) >= -1e-15 * scale)),
+                Side::Both => {}
+            }
+        }
+    }
+}

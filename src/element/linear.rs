@@ -1,0 +1,220 @@
+//! Stretching and potential on one element: P1 nodes, exact inside.
+//!
+//! The fluxes sigma = EA u' - P q' and D = P u' + eps q' have given derivatives, so
+//!
+//! ```text
+//!     (u', q')' = K^-1 (sigma, D)',   K = [[EA, -P], [P, eps]],   K^-1 = [[uu, uq], [-uq, qq]]
+//!     uu = eps / det,  uq = P / det,  qq = EA / det,  det = EA eps + P^2 > 0
+//! ```
+//!
+//! and integrals of K^-1 and of K^-1 times the load inside the element are all that nodes need. Where the
+//! coefficients are constant on the element this is the P1 Galerkin solution of the paper's Problem 4;
+//! where they vary, Galerkin takes the inverse of the mean of K instead of the mean of the inverse and
+//! is off by O(h^2), while this stays exact at nodes.
+
+use super::contact::parts;
+use super::hermite::Motion;
+use super::{Element, POINTS, Span};
+use crate::error::Error;
+use crate::law::truncate_positive;
+use crate::profile::{Piece, Profile, Slot};
+use crate::quadrature::gauss;
+use crate::real::Real;
+use crate::scene::Model;
+use arrayvec::ArrayVec;
+
+type PieceOf<T, P> = <P as Profile<T>>::Piece;
+/// The roughest of the three coefficients' pieces.
+type Joint<T, M> = <PieceOf<T, <M as Model<T>>::Axial> as Piece<T>>::Join<
+    <PieceOf<T, <M as Model<T>>::Piezo> as Piece<T>>::Join<PieceOf<T, <M as Model<T>>::Permittivity>>,
+>;
+/// That piece, or nothing where the profile P is absent.
+type Where<T, P, M> = <PieceOf<T, P> as Piece<T>>::Gate<Joint<T, M>>;
+
+/// K^-1 on an element. What the scene lacks takes no room.
+pub(crate) struct Flexibility<T: Real, M: Model<T>> {
+    uu: Where<T, M::Axial, M>,
+    uq: Where<T, M::Piezo, M>,
+    qq: Where<T, M::Permittivity, M>,
+}
+
+impl<T: Real, M: Model<T>> Clone for Flexibility<T, M> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<T: Real, M: Model<T>> Copy for Flexibility<T, M> {}
+
+impl<T: Real, M: Model<T>> Default for Flexibility<T, M> {
+    fn default() -> Self {
+        Self { uu: Default::default(), uq: Default::default(), qq: Default::default() }
+    }
+}
+
+/// uu, uq, qq as numbers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Inverse<T> {
+    pub(crate) uu: T,
+    pub(crate) uq: T,
+    pub(crate) qq: T,
+}
+
+/// K^-1 from its coefficients, by eliminating u: no product of EA and eps is formed, so that units as far
+/// apart as a micro-beam's keep clear of under- and overflow.
+pub(crate) fn invert<T: Real, M: Model<T>>(axial: T, piezo: T, permittivity: T) -> Inverse<T> {
+    let zero = T::zero();
+    if !M::Axial::PRESENT {
+        let qq = if M::Permittivity::PRESENT { T::one() / permittivity } else { zero };
+        return Inverse { uu: zero, uq: zero, qq };
+    }
+    if !M::Permittivity::PRESENT {
+        return Inverse { uu: T::one() / axial, uq: zero, qq: zero };
+    }
+    let ratio = piezo / axial;
+    let whole = permittivity + piezo * ratio;
+    Inverse { uu: permittivity / whole / axial, uq: ratio / whole, qq: T::one() / whole }
+}
+
+impl<T: Real, M: Model<T>> Flexibility<T, M> {
+    pub(crate) fn sample(model: &M, span: &Span<T>) -> Result<Self, Error> {
+        let beam = model.beam();
+        let one = [T::one(); POINTS];
+        let axial = if M::Axial::PRESENT { span.positive(beam.axial, "beam.axial")? } else { one };
+        let permittivity = if M::Permittivity::PRESENT {
+            span.positive(beam.permittivity, "beam.permittivity")?
+        } else {
+            one
+        };
+        let piezo = span.samples("beam.piezo", |x| beam.piezo.value(x, span.mid()))?;
+        let mut points = [Inverse { uu: T::zero(), uq: T::zero(), qq: T::zero() }; POINTS];
+        for (i, point) in points.iter_mut().enumerate() {
+            *point = invert::<T, M>(axial[i], piezo[i], permittivity[i]);
+        }
+        Ok(Self::from_points(points))
+    }
+
+    pub(crate) fn from_points(points: [Inverse<T>; POINTS]) -> Self {
+        Self {
+            uu: Piece::from_samples(points.map(|p| p.uu)),
+            uq: Piece::from_samples(points.map(|p| p.uq)),
+            qq: Piece::from_samples(points.map(|p| p.qq)),
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn at(&self, t: T) -> Inverse<T> {
+        Inverse { uu: self.uu.at(t), uq: self.uq.at(t), qq: self.qq.at(t) }
+    }
+
+    /// Means over the element.
+    #[inline(always)]
+    pub(crate) fn mean(&self) -> Inverse<T> {
+        Inverse { uu: self.uu.mean(), uq: self.uq.mean(), qq: self.qq.mean() }
+    }
+}
+
+type AxialSlot<T, M> = <<M as Model<T>>::AxialLoad as Profile<T>>::Slot;
+
+/// The axial load F(x) = integral of f_bar from the left node, as nodes feel it.
+pub(crate) struct AxialLoad<T: Real, M: Model<T>> {
+    /// F at the right node.
+    total: AxialSlot<T, M>,
+    /// Integrals over the element of uu F and uq F.
+    stretch: AxialSlot<T, M>,
+    charge: AxialSlot<T, M>,
+}
+
+impl<T: Real, M: Model<T>> Clone for AxialLoad<T, M> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<T: Real, M: Model<T>> Copy for AxialLoad<T, M> {}
+
+impl<T: Real, M: Model<T>> Default for AxialLoad<T, M> {
+    fn default() -> Self {
+        Self { total: Slot::of(T::zero()), stretch: Slot::of(T::zero()), charge: Slot::of(T::zero()) }
+    }
+}
+
+impl<T: Real, M: Model<T>> AxialLoad<T, M> {
+    pub(crate) fn sample(model: &M, span: &Span<T>, flexibility: &Flexibility<T, M>) -> Result<Self, Error> {
+        if !M::AxialLoad::PRESENT {
+            return Ok(Self::default());
+        }
+        let load = model.load();
+        let f = span.samples("load.axial", |x| load.axial.value(x, span.mid()))?;
+        let (mut total, mut stretch, mut charge) = (T::zero(), T::zero(), T::zero());
+        for (f, (t, weight)) in f.iter().zip(gauss::<POINTS>()) {
+            // integral over x of uu F = h^2 integral over t of f(t) integral_0^t uu
+            let (t, part) = (T::of(t), span.h() * T::of(weight) * *f);
+            total = total + part;
+            stretch = stretch + span.h() * part * flexibility.uu.integral(t);
+            charge = charge + span.h() * part * flexibility.uq.integral(t);
+        }
+        Ok(Self { total: Slot::of(total), stretch: Slot::of(stretch), charge: Slot::of(charge) })
+    }
+
+    pub(crate) fn merge(elements: &[Element<T, M>]) -> Self {
+        let (mut total, mut stretch, mut charge) = (T::zero(), T::zero(), T::zero());
+        for element in elements {
+            let (mean, load) = (element.flexibility.mean(), element.axial);
+            stretch = stretch + load.stretch.get() + total * element.h * mean.uu;
+            charge = charge + load.charge.get() + total * element.h * mean.uq;
+            total = total + load.total.get();
+        }
+        Self { total: Slot::of(total), stretch: Slot::of(stretch), charge: Slot::of(charge) }
+    }
+
+    #[inline(always)]
+    pub(crate) fn get(&self) -> Source<T> {
+        Source { total: self.total.get(), stretch: self.stretch.get(), charge: self.charge.get() }
+    }
+}
+
+/// A load on the fluxes from the left node: its total, and the integrals of two flexibilities times it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Source<T> {
+    pub(crate) total: T,
+    /// Integral of (uu or uq) times the load so far: what it does to u.
+    pub(crate) stretch: T,
+    /// Integral of (uq or qq) times the load so far: what it does to q.
+    pub(crate) charge: T,
+}
+
+/// The conduction current mu2 R~(eta)^2 of an element (3), integrated exactly at eta = 0 and eta = M.
+#[inline]
+pub(crate) fn current<T: Real, M: Model<T>>(
+    model: &M,
+    element: &Element<T, M>,
+    motion: &Motion<T>,
+) -> Source<T> {
+    let zero = T::zero();
+    let mut source = Source { total: zero, stretch: zero, charge: zero };
+    if !M::Mu2::PRESENT || element.mu2.constant() == Some(zero) {
+        return source;
+    }
+    let most = model.conduction().truncation;
+    let eta = motion.cubic();
+    if eta.side(zero) == crate::cubic::Side::Below {
+        return source;
+    }
+    let mut splits: ArrayVec<T, 6> = ArrayVec::new();
+    splits.extend(eta.crossings(zero));
+    splits.extend(eta.crossings(most));
+    for (from, to) in parts(&mut splits) {
+        let length = to - from;
+        if eta.at(from + T::of(0.5) * length) <= zero {
+            continue;
+        }
+        for (z, weight) in gauss::<POINTS>() {
+            let t = from + length * T::of(z);
+            let r = truncate_positive(eta.at(t), most).0;
+            let part = element.h * (T::of(weight) * length) * element.mu2.at(t) * (r * r);
+            source.total = source.total + part;
+            source.stretch = source.stretch + element.h * part * element.flexibility.uq.integral(t);
+            source.charge = source.charge + element.h * part * element.flexibility.qq.integral(t);
+        }
+    }
+    source
+}

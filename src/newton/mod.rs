@@ -1,0 +1,788 @@
+//! Newton's method (3.8) with the active set decided at the kinks.
+//!
+//! One iteration on one mesh:
+//!
+//! ```text
+//!     u, q, sigma, D  from the penetration, where conduction goes both ways        (2), (3)
+//!     forward sweep:  linearise the contact of each element, condense it, and
+//!                     measure the residual of the state that it was linearised at
+//!     backward sweep: the new state                                                (3.8)
+//! ```
+//!
+//! *Residual.* The deformation of an element gives its moment: linear, known by its values at both ends,
+//! and formed from the relative unknowns e, free of the cancellation that differences of nodal values
+//! suffer. Equilibrium gives the same moment in another way. The residual is the largest difference of the
+//! two, over the largest moment. While iterating, a sweep compares each element with the condensed left
+//! part; this takes no extra pass. Before a solve says `Converged`, [`Level::check`] compares with the
+//! moment that statics gives from loads and contact forces alone, so that nothing that the recursion may
+//! have lost goes unseen. Where the contact force is monotone this residual bounds the error: the statical
+//! moment is in equilibrium, and so differs from that of the deformation by at least as much, in the energy
+//! norm, as the latter does from the solution's. Shear is not compared: 1/h times the rounding of e is in
+//! it, which is no error of the moment.
+//!
+//! *Whole states and increments.* A sweep solves for the whole state: what did not change need not be swept
+//! again. Its rounding, a few units times the root of N, stays in the state however often it is repeated.
+//! So where the residual shows it a last sweep solves for an increment, with what is missing of equilibrium
+//! and of compatibility for its data; both are found by compensated sums ([`Level::polish`]).
+//!
+//! *Only what changed.* Both ends are condensed towards a meeting point among the elements whose matrices
+//! changed; the parts outside them stay as they are. Convergence is decided on all elements.
+//!
+//! *Descent.* Without the potential's action on bending the state is the minimum of a convex energy. A full step
+//! that made the residual grow is cut to where the energy is least along it ([`Level::shorten`]).
+
+pub(crate) mod nested;
+mod settings;
+
+pub use settings::{Report, Settings, Status};
+
+use crate::cubic::Cubic;
+use crate::electric::{self, Ratio};
+use crate::element::Element;
+use crate::element::contact::{Contact, Fault, Touch};
+use crate::element::hermite::Motion;
+use crate::law::Compliance;
+use crate::profile::Profile;
+use crate::real::{Pair, Real, Sum};
+use crate::scene::Model;
+use crate::storage::{Node, Place, State, Work};
+use crate::sweep::pair::Bending;
+use crate::sweep::{Block, End};
+use core::ops::Range;
+
+/// Differences between moments by deformation and by equilibrium, and what to compare them with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Residual<T> {
+    /// Largest difference of the moments \[N m\].
+    mismatch: T,
+    /// Largest difference of the forces, times the length \[N m\]: how the moments would differ farther on.
+    /// In it is rounding of e times 1/h.
+    lever: T,
+    /// Largest moment \[N m\].
+    size: T,
+    /// Sum of the sizes of loads and contact forces, times the length \[N m\].
+    load: T,
+    /// Sum of all differences: not finite where one of them is not, which a maximum would pass over.
+    sum: T,
+}
+
+impl<T: Real> Residual<T> {
+    fn none() -> Self {
+        Self { mismatch: T::zero(), lever: T::zero(), size: T::zero(), load: T::zero(), sum: T::zero() }
+    }
+
+    /// Compares an element's force and moment at one end, `held`, with what it should be; h leads to its
+    /// other end.
+    #[inline(always)]
+    fn see(&mut self, gap: T::Vec2, held: T::Vec2, h: T) {
+        let far = gap.y() - h * gap.x();
+        self.mismatch = larger(larger(self.mismatch, gap.y().abs()), far.abs());
+        self.measure(held, h);
+        self.sum = self.sum + far;
+    }
+
+    /// Takes an element's moments at both ends for the size to compare with.
+    #[inline(always)]
+    fn measure(&mut self, held: T::Vec2, h: T) {
+        let far = held.y() - h * held.x();
+        self.size = larger(larger(self.size, held.y().abs()), far.abs());
+    }
+
+    /// Counts a force that is out of balance with the lever `length`.
+    #[inline(always)]
+    fn see_force(&mut self, gap: T, length: T) {
+        self.lever = larger(self.lever, gap.abs() * length);
+    }
+
+    /// The relative residual; zero where there is no moment at all.
+    pub(crate) fn relative(&self) -> T {
+        Self::over(self.mismatch.max(self.lever), self.size)
+    }
+
+    fn over(mismatch: T, size: T) -> T {
+        if mismatch == T::zero() { T::zero() } else { mismatch / size }
+    }
+
+    /// What rounding alone may leave: some units in the last place of the moment and of the sums of forces
+    /// that balance to it.
+    pub(crate) fn floor(&self) -> T {
+        if self.load == T::zero() {
+            T::zero()
+        } else {
+            T::of(16.0) * T::epsilon() * (T::one() + self.load / self.size)
+        }
+    }
+
+    fn is_finite(&self) -> bool {
+        (self.mismatch + self.lever + self.size + self.sum).is_finite()
+    }
+}
+
+/// Why an iteration cannot go on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Halt {
+    Breakdown(usize),
+    Law(usize, Fault),
+    Budget,
+}
+
+impl From<Halt> for Status {
+    fn from(halt: Halt) -> Self {
+        match halt {
+            Halt::Breakdown(element) => Self::Breakdown { element },
+            Halt::Law(element, Fault::NotFinite) => Self::LawNotFinite { element },
+            Halt::Law(element, Fault::NotMonotone) => Self::LawNotMonotone { element },
+            Halt::Budget => Self::VisitLimit,
+        }
+    }
+}
+
+/// What holds on every mesh of a solve.
+pub(crate) struct Context<'a, T: Real, M: Model<T>> {
+    pub(crate) model: &'a M,
+    pub(crate) left: End<T, Bending>,
+    pub(crate) right: End<T, Bending>,
+    /// Where the potential acts on bending: what its slopes need.
+    pub(crate) onto: Option<Ratio<T>>,
+    /// Bending acts on the potential.
+    pub(crate) into: bool,
+}
+
+/// Work done so far and allowed.
+pub(crate) struct Count {
+    pub(crate) iterations: usize,
+    pub(crate) visits: usize,
+    pub(crate) most_visits: usize,
+}
+
+impl Count {
+    /// Counts visits, or says that they are over the cap.
+    fn spend(&mut self, visits: usize) -> Result<(), Halt> {
+        if visits > self.most_visits - self.visits {
+            return Err(Halt::Budget);
+        }
+        self.visits += visits;
+        Ok(())
+    }
+}
+
+/// Newton's iteration on one mesh.
+pub(crate) struct Level<'a, 'b, T: Real, M: Model<T>> {
+    pub(crate) context: &'b Context<'a, T, M>,
+    pub(crate) places: &'b mut [Place<T, M>],
+    /// Fields at the left end.
+    pub(crate) node: Node<T, M>,
+    /// Which of the two states is the current one.
+    pub(crate) current: usize,
+    /// Which holds the best iterate; its residual.
+    pub(crate) best: Option<(usize, Residual<T>)>,
+    /// Elements before this one are condensed from the left, the others from the right.
+    meeting: usize,
+}
+
+/// What a sweep solves for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Solve<T: Real> {
+    State,
+    /// An increment, where the element's loads are in the spare state and the left end has to move by
+    /// `open`.
+    Increment {
+        open: T::Vec2,
+    },
+}
+
+/// How an iteration on one mesh ended, if it was not halted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Outcome {
+    Converged,
+    Floor,
+    Stalled,
+}
+
+impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
+    pub(crate) fn new(context: &'b Context<'a, T, M>, places: &'b mut [Place<T, M>]) -> Self {
+        let meeting = (places.len() / 2).max(1);
+        Self { context, places, node: Node::default(), current: 0, best: None, meeting }
+    }
+
+    /// Is bending in a loop with the potential?
+    fn two_way(&self) -> bool {
+        self.context.onto.is_some() && self.context.into
+    }
+
+    /// u, q and the fluxes from the current penetration, to all digits.
+    pub(crate) fn electric(&mut self) {
+        self.node = electric::solve::<T, M, true>(self.context.model, self.places, self.current);
+    }
+
+    /// The same with the rounding of plain sums, as good as an iteration needs.
+    fn electric_rounded(&mut self) {
+        self.node = electric::solve::<T, M, false>(self.context.model, self.places, self.current);
+    }
+
+    /// Iterates until the relative residual is at most `stop`, at most `most` times, with the law scaled by
+    /// `scale`. The current state is then the best one found.
+    pub(crate) fn iterate(
+        &mut self,
+        scale: T,
+        stop: T,
+        most: usize,
+        count: &mut Count,
+    ) -> Result<Outcome, Halt> {
+        let all = 0..self.places.len();
+        self.iterate_from(all, scale, stop, most, count)
+    }
+
+    /// The same, where only the elements `changed` have changed since they were condensed last.
+    pub(crate) fn iterate_from(
+        &mut self,
+        changed: Range<usize>,
+        scale: T,
+        stop: T,
+        most: usize,
+        count: &mut Count,
+    ) -> Result<Outcome, Halt> {
+        self.best = None;
+        let outcome = self.descend(changed, scale, stop, most, count);
+        if outcome != Ok(Outcome::Converged) {
+            self.keep_best();
+        }
+        outcome
+    }
+
+    /// The beam without its foundation's law, from a state that may be none: it need not satisfy the
+    /// conditions at the ends.
+    pub(crate) fn free(&mut self, count: &mut Count) -> Result<Range<usize>, Halt> {
+        let all = 0..self.places.len();
+        self.best = None;
+        if self.two_way() {
+            self.electric_rounded();
+        }
+        count.spend(all.len())?;
+        self.condense(all, T::zero(), Solve::State)?;
+        count.iterations += 1;
+        self.substitute(false).ok_or(Halt::Breakdown(self.meeting - 1))
+    }
+
+    fn descend(
+        &mut self,
+        mut changed: Range<usize>,
+        scale: T,
+        stop: T,
+        most: usize,
+        count: &mut Count,
+    ) -> Result<Outcome, Halt> {
+        if self.two_way() {
+            self.electric_rounded();
+        }
+        let mut least = T::infinity();
+        let mut rounds_since_best = 0;
+        // What rounding may leave of a sweep's residual: 1/h times that of e is in the forces.
+        let blur = T::of(64.0) * T::epsilon() * T::from(self.places.len()).unwrap_or(T::one());
+        for _ in 0..=most {
+            let mut residual = Residual::none();
+            if !changed.is_empty() {
+                let swept = self.extent(&changed);
+                count.spend(swept.len())?;
+                residual = self.condense(swept, scale, Solve::State)?;
+            }
+            if residual.relative() <= stop.max(blur) {
+                // Nothing changed, or as little as a sweep can tell: ask statics, on all elements.
+                residual = self.check(scale, count)?;
+                // As long as it helps: the sweeps are less exact than the increments that they give.
+                for _ in 0..POLISHINGS {
+                    let before = residual.relative();
+                    if before <= stop {
+                        break;
+                    }
+                    self.best = Some((self.current, residual));
+                    residual = self.polish(scale, count)?;
+                    if residual.relative() > T::of(0.5) * before {
+                        break;
+                    }
+                }
+                if residual.relative() > stop {
+                    // The factors may be those of an increment: condense the state again.
+                    count.spend(self.places.len())?;
+                    self.condense(0..self.places.len(), scale, Solve::State)?;
+                }
+            }
+            let last = self.best.map(|(_, best)| best.relative());
+            if self.convex() && last.is_some_and(|last| residual.relative() > last) {
+                // A full step that made things worse: go only as far as the energy falls.
+                if self.shorten(scale, count)? {
+                    count.spend(self.places.len())?;
+                    residual = self.condense(0..self.places.len(), scale, Solve::State)?;
+                }
+                // Less energy is better, whatever the residual says.
+                self.best = None;
+            }
+            let relative = residual.relative();
+            if self.best.is_none_or(|(_, best)| relative < best.relative()) {
+                self.best = Some((self.current, residual));
+            }
+            if relative <= stop {
+                return Ok(Outcome::Converged);
+            }
+            let halved = relative < T::of(0.5) * least;
+            rounds_since_best = if halved { 0 } else { rounds_since_best + 1 };
+            least = least.min(relative);
+            // At the floor no progress can be expected; above it, patience ends.
+            if least <= T::of(4.0) * residual.floor() && rounds_since_best >= 2 {
+                return Ok(Outcome::Floor);
+            }
+            if rounds_since_best > PATIENCE {
+                return Ok(Outcome::Stalled);
+            }
+            changed = self.substitute(false).ok_or(Halt::Breakdown(self.meeting - 1))?;
+            count.iterations += 1;
+            if self.two_way() {
+                self.electric_rounded();
+                changed = self.changed();
+            }
+        }
+        Ok(Outcome::Stalled)
+    }
+
+    /// Is bending, with the potential as it is, the minimum of a convex energy?
+    fn convex(&self) -> bool {
+        self.context.onto.is_none()
+    }
+
+    /// After a step from the best state (the spare one) to the current one that did not reduce the residual:
+    /// moves the current state to where the energy is least in between, and says whether it did.
+    ///
+    /// The energy is convex and the step a direction of descent, so its derivative along the step rises
+    /// through zero; the root is bracketed and found to a tenth by the Illinois method, with bisections.
+    fn shorten(&mut self, scale: T, count: &mut Count) -> Result<bool, Halt> {
+        let spare = 1 - self.current;
+        if self.best.is_none_or(|(best, _)| best != spare) {
+            return Ok(false);
+        }
+        let (zero, one) = (T::zero(), T::one());
+        let start = self.derivative(zero, scale, count)?;
+        let end = self.derivative(one, scale, count)?;
+        let small = T::of(0.1) * start.abs();
+        if !(start < zero && end > small) {
+            return Ok(false);
+        }
+        let (mut low, mut high) = ((zero, start), (one, end));
+        let mut t = one;
+        for round in 0..40 {
+            let falsi = low.0 - low.1 * ((high.0 - low.0) / (high.1 - low.1));
+            let middle = T::of(0.5) * (low.0 + high.0);
+            t = if round % 3 == 2 || !(falsi > low.0 && falsi < high.0) { middle } else { falsi };
+            let slope = self.derivative(t, scale, count)?;
+            if slope.abs() <= small {
+                break;
+            }
+            // Illinois: the end that stays is weighted less, so that it does not stay for good.
+            if slope < zero {
+                low = (t, slope);
+                high.1 = T::of(0.5) * high.1;
+            } else {
+                high = (t, slope);
+                low.1 = T::of(0.5) * low.1;
+            }
+        }
+        if t <= zero {
+            return Ok(false);
+        }
+        let current = self.current;
+        for Place { work, .. } in self.places.iter_mut() {
+            work.states[current] = work.states[spare].toward(work.states[current], t);
+        }
+        Ok(true)
+    }
+
+    /// Derivative of the energy along the step from the spare state to the current one, at the share t of
+    /// it.
+    fn derivative(&self, t: T, scale: T, count: &mut Count) -> Result<T, Halt> {
+        count.spend(self.places.len())?;
+        let model = self.context.model;
+        let mut sum = Sum::<T>::default();
+        for (i, Place { element, work }) in self.places.iter().enumerate() {
+            let (from, to) = (work.states[1 - self.current], work.states[self.current]);
+            let State { e, d } = from.toward(to, t);
+            let motion = Motion::new(element.h, e, d);
+            let contact = Contact::at(model, element, &motion, Cubic::default, scale)
+                .map_err(|fault| Halt::Law(i, fault))?;
+            let (ce, cd) = contact.force(&motion, element.h);
+            sum.add((element.deforming_force(e) + ce).times(to.e - from.e));
+            sum.add((cd - element.fr).times(to.d - from.d));
+        }
+        Ok(sum.value())
+    }
+
+    /// One step for an increment of the best state.
+    ///
+    /// Compatibility first: d is summed anew from the relative unknowns, from the right end, and what is
+    /// open at the left end is data for the step. Then equilibrium: as the moments of statics do no work
+    /// on any admissible increment, the difference of an element's moments from them is all its load.
+    fn polish(&mut self, scale: T, count: &mut Count) -> Result<Residual<T>, Halt> {
+        self.keep_best();
+        let (current, all) = (self.current, 0..self.places.len());
+        let right = self.context.right.value;
+        let (mut w, mut theta) = (Sum::<T>::from(right.x()), Sum::<T>::from(right.y()));
+        for Place { element, work } in self.places.iter_mut().rev() {
+            let state = &mut work.states[current];
+            state.d = T::Vec2::of(w.value(), theta.value());
+            w.add(-(element.h * theta.value()));
+            w.add(state.e.x());
+            theta.add(state.e.y());
+            if M::Gap::PRESENT {
+                theta.add(element.gap.kink::<T>().y());
+            }
+        }
+        let left = self.context.left.value;
+        w.add(-left.x());
+        theta.add(-left.y());
+        let open = -T::Vec2::of(w.value(), theta.value());
+        if self.two_way() {
+            self.electric();
+        }
+        self.balance(scale, true)?;
+        count.spend(2 * all.len())?;
+        self.condense(all, scale, Solve::Increment { open })?;
+        self.substitute(true).ok_or(Halt::Breakdown(self.meeting - 1))?;
+        count.iterations += 1;
+        self.check(scale, count)
+    }
+
+    /// Takes the rounding of the sweeps out of a converged state, where there is any to speak of; keeps
+    /// what is better.
+    pub(crate) fn refine(&mut self, count: &mut Count) -> Result<(), Halt> {
+        let Some((_, best)) = self.best else { return Ok(()) };
+        if best.relative() <= T::of(128.0) * T::epsilon() {
+            return Ok(());
+        }
+        let polished = self.polish(T::one(), count);
+        if let Ok(residual) = polished
+            && residual.relative() < best.relative()
+        {
+            self.best = Some((self.current, residual));
+        }
+        self.keep_best();
+        match polished {
+            // The state was good enough before; that there is no more work to spend on it changes nothing.
+            Ok(_) | Err(Halt::Budget) => Ok(()),
+            Err(halt) => Err(halt),
+        }
+    }
+
+    /// Where no iteration got as far as a residual: that of the current state, if it can be had.
+    pub(crate) fn assess(&mut self) {
+        if self.best.is_none()
+            && let Ok(residual) = self.balance(T::one(), false)
+        {
+            self.best = Some((self.current, residual));
+        }
+    }
+
+    /// Makes the best state the current one.
+    fn keep_best(&mut self) {
+        if let Some((best, _)) = self.best
+            && best != self.current
+        {
+            self.current = best;
+            if self.two_way() {
+                self.electric();
+            }
+        }
+    }
+
+    /// The elements that have to be condensed anew where those of `changed` changed; moves the meeting
+    /// point among these.
+    fn extent(&mut self, changed: &Range<usize>) -> Range<usize> {
+        let swept = changed.start.min(self.meeting)..changed.end.max(self.meeting);
+        let most = (self.places.len() - 1).max(1);
+        self.meeting = self.meeting.clamp(changed.start, changed.end).clamp(1, most);
+        swept
+    }
+
+    /// Linearises the elements of `swept` at the current state and condenses them, from both sides towards
+    /// the meeting point; the residual of the state there.
+    #[inline(never)]
+    fn condense(&mut self, swept: Range<usize>, scale: T, solve: Solve<T>) -> Result<Residual<T>, Halt> {
+        let Context { model, ref onto, .. } = *self.context;
+        let (mut left, mut right) = (self.context.left, self.context.right);
+        if let Solve::Increment { open } = solve {
+            (left.value, right.value) = (open, T::Vec2::default());
+        }
+        let spare = 1 - self.current;
+        let step = solve != Solve::State;
+        let (current, meeting, last) = (self.current, self.meeting, self.places.len() - 1);
+        let length = model.length();
+        let mut residual = Residual::none();
+        let (mut from_left, mut from_right) = (swept.start.min(meeting), swept.end.max(meeting));
+        let mut west = match from_left.checked_sub(1) {
+            Some(before) => self.places[before].work.condensed,
+            None => left.condensed,
+        };
+        let mut east = self.places.get(from_right).map_or(right.condensed, |p| p.work.condensed);
+        // The two chains do not wait for each other, so they are interleaved.
+        while from_left < meeting || from_right > meeting {
+            if from_left < meeting {
+                let i = from_left;
+                let (node, far) = match i.checked_sub(1).map(|before| &self.places[before].work) {
+                    Some(before) => (before.node, before.states[current].d),
+                    None => (self.node, T::Vec2::default()),
+                };
+                let Place { element, work } = &mut self.places[i];
+                let h = element.h;
+                let (contact, motion) = linearise(model, element, work, &node, current, onto, scale)
+                    .map_err(|fault| Halt::Law(i, fault))?;
+                let (ce, cd) = contact.force(&motion, h);
+                let held = element.deforming_force(motion.e) + ce;
+                if i > 0 {
+                    let gap = beyond(west.force(far) + held, west.rounding(far), held, h);
+                    residual.see(gap, held, h);
+                    residual.see_force(gap.x(), length);
+                } else {
+                    residual.measure(held, h);
+                }
+                residual.load = residual.load + cd.x().abs() + element.fr.x().abs();
+                let mut stamp = contact.stamp(element);
+                if step {
+                    (stamp.fe, stamp.fr) = (-work.states[spare].e, T::Vec2::default());
+                } else if M::Gap::PRESENT {
+                    west = west.shift(element.gap.kink::<T>());
+                }
+                let absorbed = if i == 0 { left.join(&west, &stamp, h) } else { west.absorb(&stamp, h) };
+                (west, work.factor) = absorbed.ok_or(Halt::Breakdown(i))?;
+                (work.condensed, work.touch) = (west, contact.touch);
+                from_left += 1;
+            }
+            if from_right > meeting {
+                from_right -= 1;
+                let i = from_right;
+                let node = match i.checked_sub(1) {
+                    Some(before) => self.places[before].work.node,
+                    None => self.node,
+                };
+                if M::Gap::PRESENT
+                    && !step
+                    && let Some(next) = self.places.get(i + 1)
+                {
+                    east = east.shift(-next.element.gap.kink::<T>());
+                }
+                let Place { element, work } = &mut self.places[i];
+                let h = element.h;
+                let (contact, motion) = linearise(model, element, work, &node, current, onto, scale)
+                    .map_err(|fault| Halt::Law(i, fault))?;
+                let (ce, cd) = contact.force(&motion, h);
+                let deforming = element.deforming_force(motion.e) + ce;
+                let held = cd - element.fr - Bending::carry_back(h, deforming);
+                if i < last {
+                    let gap = east.force(motion.d) + held;
+                    let gap = beyond(gap, east.rounding(motion.d), held, h);
+                    residual.see(gap, held, -h);
+                    residual.see_force(gap.x(), length);
+                } else {
+                    residual.measure(held, -h);
+                }
+                residual.load = residual.load + cd.x().abs() + element.fr.x().abs();
+                let mut stamp = contact.stamp(element);
+                if step {
+                    (stamp.fe, stamp.fr) = (-work.states[spare].e, T::Vec2::default());
+                }
+                let stamp = stamp.mirrored(h);
+                let absorbed =
+                    if i == last { right.join(&east, &stamp, -h) } else { east.absorb(&stamp, -h) };
+                (east, work.factor) = absorbed.ok_or(Halt::Breakdown(i))?;
+                (work.condensed, work.touch) = (east, contact.touch);
+            }
+        }
+        if let Some(Place { element, work }) = self.places.get(meeting) {
+            // Both parts against each other, at the node where they meet.
+            let d = self.places[meeting - 1].work.states[current].d;
+            let east = work.condensed.shift(-element.gap.kink::<T>());
+            let gap = self.places[meeting - 1].work.condensed.force(d) + east.force(d);
+            residual.see(gap, T::Vec2::default(), T::zero());
+            residual.see_force(gap.x(), length);
+        }
+        residual.load = residual.load * length;
+        residual.size = residual.size.max(self.best.map_or(T::zero(), |(_, best)| best.size));
+        if residual.is_finite() { Ok(residual) } else { Err(Halt::Breakdown(meeting - 1)) }
+    }
+
+    /// The residual of the current state by statics: no part of the recursion is used.
+    ///
+    /// The shear at the left end is not taken from the first element, which knows it to N times rounding
+    /// only, but from the moments at both ends of the beam; hence two passes.
+    fn check(&mut self, scale: T, count: &mut Count) -> Result<Residual<T>, Halt> {
+        count.spend(self.places.len())?;
+        if self.two_way() {
+            self.electric();
+        }
+        self.balance(scale, false)
+    }
+
+    /// The residual by statics; with `store`, each element's differences of force and moment go into the
+    /// spare state.
+    fn balance(&mut self, scale: T, store: bool) -> Result<Residual<T>, Halt> {
+        let Some(Place { element, work }) = self.places.first() else { return Ok(Residual::none()) };
+        let shear = element.deforming_force(work.states[self.current].e).x();
+        let (_, rest) = self.statics(scale, shear, false)?;
+        let shear = shear - rest / self.context.model.length();
+        self.statics(scale, shear, store).map(|(residual, _)| residual)
+    }
+
+    /// Moments by deformation against moments by statics from the left end, where the shear is `shear`;
+    /// the residual and the difference at the right end.
+    #[inline(never)]
+    fn statics(&mut self, scale: T, shear: T, store: bool) -> Result<(Residual<T>, T), Halt> {
+        let Context { model, ref onto, .. } = *self.context;
+        let mut residual = Residual::none();
+        let mut rest = T::zero();
+        let (mut force, mut moment) = (Sum::<T>::default(), Sum::<T>::default());
+        let (current, spare) = (self.current, 1 - self.current);
+        let mut node = self.node;
+        for (i, Place { element, work }) in self.places.iter_mut().enumerate() {
+            let h = element.h;
+            let (contact, motion) = linearise(model, element, work, &node, current, onto, scale)
+                .map_err(|fault| Halt::Law(i, fault))?;
+            let (ce, cd) = contact.force(&motion, h);
+            let held = element.deforming_force(motion.e) + ce;
+            if i == 0 {
+                (force, moment) = (Sum::from(-(shear + ce.x())), Sum::from(-held.y()));
+            }
+            let gap = T::Vec2::of(force.plus(held.x()), moment.plus(held.y()));
+            residual.see(gap, held, h);
+            rest = gap.y() - h * gap.x();
+            residual.load = residual.load + cd.x().abs() + element.fr.x().abs();
+            let carried = cd - element.fr;
+            moment.add(-(h * force.value()));
+            moment.add(carried.y());
+            force.add(carried.x());
+            if store {
+                work.states[spare].e = gap;
+            }
+            node = work.node;
+        }
+        residual.load = residual.load * model.length();
+        if residual.is_finite() { Ok((residual, rest)) } else { Err(Halt::Breakdown(0)) }
+    }
+
+    /// Back substitution from the meeting point to both ends: the new state beside the best one, and the
+    /// elements whose matrices it changes. `None` if the parts cannot be joined.
+    #[inline(never)]
+    fn substitute(&mut self, step: bool) -> Option<Range<usize>> {
+        let current = self.current;
+        let meeting = self.meeting;
+        let (west, east) = self.places.split_at_mut(meeting);
+        let met = west.last()?.work.condensed;
+        let d = match east.first() {
+            Some(Place { element, work }) => {
+                if step {
+                    met.meet(&work.condensed)?
+                } else {
+                    met.meet(&work.condensed.shift(-element.gap.kink::<T>()))?
+                }
+            }
+            None if step => {
+                let mut right = self.context.right;
+                right.value = T::Vec2::default();
+                right.close(&met)?
+            }
+            None => self.context.right.close(&met)?,
+        };
+        // The best state stays where it is; any other may be overwritten.
+        let target = match self.best {
+            Some((best, _)) if best == self.current => 1 - self.current,
+            _ => self.current,
+        };
+        let mut near = d;
+        for Place { element, work } in west.iter_mut().rev() {
+            let (e, far) = work.factor.substitute(near, element.h);
+            work.states[target] = work.states[current].then(step, e, near);
+            near = if M::Gap::PRESENT && !step { far + element.gap.kink::<T>() } else { far };
+        }
+        let mut near = d;
+        for Place { element, work } in east {
+            if M::Gap::PRESENT && !step {
+                near = near - element.gap.kink::<T>();
+            }
+            let (e, far) = work.factor.substitute(near, -element.h);
+            // e = -T e^
+            let e = -Bending::carry(element.h, e);
+            work.states[target] = work.states[current].then(step, e, far);
+            near = far;
+        }
+        self.current = target;
+        Some(if self.two_way() { 0..self.places.len() } else { self.changed() })
+    }
+
+    /// From the first to the last element whose matrix the current state changes, or whose part in the
+    /// right-hand side.
+    fn changed(&self) -> Range<usize> {
+        let mut changed = self.places.len()..0;
+        if !M::Law::PRESENT && !M::Mu1::PRESENT {
+            return 0..0;
+        }
+        let Context { model, ref onto, .. } = *self.context;
+        let mut node = &self.node;
+        for (i, Place { element, work }) in self.places.iter().enumerate() {
+            let State { e, d } = work.states[self.current];
+            let q = || potential(element, work, node, onto);
+            let eta = Motion::new(element.h, e, d).cubic();
+            let touch = Touch::of(model, element, &eta, q);
+            if touch == Touch::Mixed || touch != work.touch {
+                changed = changed.start.min(i)..i + 1;
+            }
+            node = &work.node;
+        }
+        if changed.start >= changed.end { 0..0 } else { changed }
+    }
+}
+
+fn potential<T: Real, M: Model<T>>(
+    element: &Element<T, M>,
+    work: &Work<T, M>,
+    left: &Node<T, M>,
+    ratio: &Option<Ratio<T>>,
+) -> Cubic<T> {
+    match ratio {
+        Some(ratio) => electric::potential(element, left, &work.node, ratio),
+        None => Cubic::default(),
+    }
+}
+
+/// The contact of an element in one of its states, and that state's motion.
+#[inline(always)]
+fn linearise<T: Real, M: Model<T>>(
+    model: &M,
+    element: &Element<T, M>,
+    work: &Work<T, M>,
+    left: &Node<T, M>,
+    state: usize,
+    ratio: &Option<Ratio<T>>,
+    scale: T,
+) -> Result<(Contact<T>, Motion<T>), Fault> {
+    let State { e, d } = work.states[state];
+    let motion = Motion::new(element.h, e, d);
+    let q = || potential(element, work, left, ratio);
+    Contact::at(model, element, &motion, q, scale).map(|contact| (contact, motion))
+}
+
+/// The larger of two sizes. (A maximum that treats NaN takes three instructions more.)
+#[inline(always)]
+fn larger<T: Real>(a: T, b: T) -> T {
+    if b > a { b } else { a }
+}
+
+/// A difference of forces, less what rounding of its parts may leave of it: on one side `rounding`, on the
+/// other an element's force `held`, in which 1/h times its moment has cancelled.
+#[inline(always)]
+fn beyond<T: Real>(gap: T::Vec2, rounding: T::Vec2, held: T::Vec2, h: T) -> T::Vec2 {
+    let unit = T::of(16.0) * T::epsilon();
+    let moment = held.y().abs() + h * held.x().abs();
+    let rest = |gap: T, noise: T| larger(gap.abs() - unit * noise, T::zero()).copysign(gap);
+    T::Vec2::of(rest(gap.x(), rounding.x() + T::of(6.0) * moment / h), rest(gap.y(), rounding.y() + moment))
+}
+
+/// Increments taken one after the other, each from sweeps of its own.
+const POLISHINGS: usize = 6;
+
+/// Rounds without halving the residual after which an iteration counts as stalled.
+const PATIENCE: usize = 40;

@@ -1,0 +1,151 @@
+//! From a scene to a solution: validation, sampling, solve.
+
+use crate::error::Error;
+use crate::mesh::Mesh;
+use crate::newton::nested::{self, Answer, Levels};
+use crate::newton::{Report, Settings};
+use crate::real::Real;
+use crate::scene::{self, Model};
+use crate::solution::Solution;
+use crate::storage::{Place, Storage, Workspace};
+
+use crate::element::Element;
+
+/// A checked scene on a mesh. Immutable: any number of solves may share it, each with its own memory.
+///
+/// ```
+/// use piezobeam::{Beam, Load, Mesh, Problem, Scene, Settings, Status};
+///
+/// let scene = Scene::new(1.0_f64, Beam::elastic(5000.0))
+///     .load(Load { transverse: 1e6, axial: (), points: () });
+/// let problem = Problem::new(scene, Mesh::uniform(10))?;
+/// let mut memory = problem.workspace::<16>();
+/// let solution = problem.solve(&mut memory, &Settings::default())?;
+/// assert_eq!(solution.report().status, Status::Converged);
+/// // f L^4 / (384 C)
+/// assert!((solution.at(0.5).bending - 1e6 / (384.0 * 5000.0)).abs() < 1e-12);
+/// # Ok::<(), piezobeam::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Problem<'a, T, M> {
+    scene: M,
+    mesh: Mesh<'a, T>,
+}
+
+impl<'a, T: Real, M: Model<T>> Problem<'a, T, M> {
+    /// Checks the scene and the mesh.
+    ///
+    /// # Errors
+    /// The first field that is wrong, where in it, what was expected and what was found. Values of
+    /// profiles are checked where they are sampled, when the scene is laid into memory.
+    pub fn new(scene: M, mesh: Mesh<'a, T>) -> Result<Self, Error> {
+        scene::validate(&scene)?;
+        mesh.validate(scene.length())?;
+        Ok(Self { scene, mesh })
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &M {
+        &self.scene
+    }
+
+    /// Memory for `N` elements of this kind of scene (see [`Workspace`] for what to add for the coarser
+    /// meshes).
+    #[must_use]
+    pub fn workspace<const N: usize>(&self) -> Workspace<T, M, N> {
+        Workspace::new()
+    }
+
+    /// Lays the mesh into memory and samples the scene on it.
+    ///
+    /// # Errors
+    /// A profile's value out of its range, with its place; too little memory.
+    ///
+    /// # Cost
+    /// Four evaluations of each profile per element (and three more of a gap). A heap workspace allocates
+    /// here, if at all.
+    pub fn prepare<'s, S: Storage<T, M> + ?Sized>(
+        &'s self,
+        memory: &'s mut S,
+    ) -> Result<Prepared<'s, T, M>, Error> {
+        // Count first, so that memory that grows does so once.
+        let mut elements = 0;
+        self.mesh.lay(&self.scene, |_, _, _| {
+            elements += 1;
+            Ok(())
+        })?;
+        let places = memory.places(elements);
+        if elements > places.len() {
+            return Err(Error::Capacity { needed: elements, available: places.len() });
+        }
+        let mut free = places.iter_mut();
+        self.mesh.lay(&self.scene, |left, right, stop| {
+            if let Some(place) = free.next() {
+                *place = Place::default();
+                place.element = Element::sample(&self.scene, left, right, stop)?;
+            }
+            Ok(())
+        })?;
+        let levels = nested::coarsen(places, elements);
+        Ok(Prepared { scene: &self.scene, places, levels })
+    }
+
+    /// [`Problem::prepare`] and [`Prepared::solve`] in one.
+    ///
+    /// # Errors
+    /// As [`Problem::prepare`], and settings out of range. Not converging is no error but a
+    /// [`Status`](crate::Status) in the solution's report.
+    pub fn solve<'s, S: Storage<T, M> + ?Sized>(
+        &'s self,
+        memory: &'s mut S,
+        settings: &Settings<T>,
+    ) -> Result<Solution<'s, T, M>, Error> {
+        self.prepare(memory)?.into_solution(settings)
+    }
+}
+
+/// A scene laid into memory, ready to be solved, again and again.
+pub struct Prepared<'s, T: Real, M: Model<T>> {
+    scene: &'s M,
+    places: &'s mut [Place<T, M>],
+    levels: Levels,
+}
+
+impl<'s, T: Real, M: Model<T>> Prepared<'s, T, M> {
+    /// Elements of the mesh.
+    #[must_use]
+    pub fn elements(&self) -> usize {
+        self.levels.first().map_or(0, |&(_, len)| len)
+    }
+
+    /// Solves from nothing.
+    ///
+    /// # Errors
+    /// Settings out of range.
+    ///
+    /// # Cost
+    /// A few sweeps over the mesh, whatever the stiffness; no allocation, no panic; bounded by
+    /// [`Settings::max_visits`].
+    pub fn solve(&mut self, settings: &Settings<T>) -> Result<Report<T>, Error> {
+        self.run(settings).map(|answer| answer.report)
+    }
+
+    /// Solves from nothing and gives the fields.
+    ///
+    /// # Errors
+    /// Settings out of range.
+    pub fn solution(&mut self, settings: &Settings<T>) -> Result<Solution<'_, T, M>, Error> {
+        let answer = self.run(settings)?;
+        Ok(Solution::new(self.scene, &self.places[..self.elements()], answer))
+    }
+
+    fn into_solution(mut self, settings: &Settings<T>) -> Result<Solution<'s, T, M>, Error> {
+        let answer = self.run(settings)?;
+        let elements = self.elements();
+        Ok(Solution::new(self.scene, &self.places[..elements], answer))
+    }
+
+    fn run(&mut self, settings: &Settings<T>) -> Result<Answer<T, M>, Error> {
+        nested::solve(self.scene, self.places, &self.levels, settings)
+    }
+}

@@ -1,0 +1,202 @@
+//! Memory for a solve: of a fixed size, where the caller puts it, or on the heap; never more than the caller gave.
+//!
+//! A mesh of N elements needs N places, and the coarser meshes that give a solve its start take what room
+//! is left: N / 3 places more are enough for all of them. Without them the solver works on the mesh asked
+//! for alone and needs more iterations where the foundation is stiff.
+
+use crate::electric::Ratio;
+use crate::element::Element;
+use crate::profile::{Profile, Slot};
+use crate::real::{Pair, Real};
+use crate::scene::Model;
+use crate::sweep::pair::Bending;
+use crate::sweep::{Condensed, Factor};
+
+use crate::element::contact::Touch;
+
+/// Fields at a node: u, q and the fluxes. What the scene lacks takes no room.
+pub(crate) struct Node<T: Real, M: Model<T>> {
+    pub(crate) u: <M::Axial as Profile<T>>::Slot,
+    /// sigma + r D (see [`crate::electric`]).
+    pub(crate) tau: <M::Axial as Profile<T>>::Slot,
+    pub(crate) q: <M::Permittivity as Profile<T>>::Slot,
+    pub(crate) charge: <M::Permittivity as Profile<T>>::Slot,
+}
+
+impl<T: Real, M: Model<T>> Clone for Node<T, M> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<T: Real, M: Model<T>> Copy for Node<T, M> {}
+
+impl<T: Real, M: Model<T>> Default for Node<T, M> {
+    fn default() -> Self {
+        let zero = T::zero();
+        Self { u: Slot::of(zero), tau: Slot::of(zero), q: Slot::of(zero), charge: Slot::of(zero) }
+    }
+}
+
+/// An element's deformation: relative unknowns e and the right node's d, both of the penetration.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct State<T: Real> {
+    pub(crate) e: T::Vec2,
+    pub(crate) d: T::Vec2,
+}
+
+impl<T: Real> State<T> {
+    /// The state (e, d), or the one that the step (e, d) leads to from here.
+    #[inline(always)]
+    pub(crate) fn then(self, step: bool, e: T::Vec2, d: T::Vec2) -> Self {
+        if step { Self { e: self.e + e, d: self.d + d } } else { Self { e, d } }
+    }
+
+    /// The state at the share t of the way to `other`.
+    #[inline(always)]
+    pub(crate) fn toward(self, other: Self, t: T) -> Self {
+        Self { e: self.e + (other.e - self.e) * t, d: self.d + (other.d - self.d) * t }
+    }
+}
+
+/// What the sweeps keep of an element and its right node.
+pub(crate) struct Work<T: Real, M: Model<T>> {
+    /// All to the left of the right node.
+    pub(crate) condensed: Condensed<T, Bending>,
+    pub(crate) factor: Factor<T, Bending>,
+    /// The current iterate and the best one so far; which is which, the iteration knows.
+    pub(crate) states: [State<T>; 2],
+    pub(crate) touch: Touch,
+    pub(crate) node: Node<T, M>,
+}
+
+impl<T: Real, M: Model<T>> Clone for Work<T, M> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<T: Real, M: Model<T>> Copy for Work<T, M> {}
+
+impl<T: Real, M: Model<T>> Default for Work<T, M> {
+    fn default() -> Self {
+        Self {
+            condensed: Condensed::default(),
+            factor: Factor::default(),
+            states: [State::default(); 2],
+            touch: Touch::Free,
+            node: Node::default(),
+        }
+    }
+}
+
+/// A place for one element: its samples and its part of the sweeps.
+///
+/// Memory is made of these; its size per element is
+/// [`Workspace::BYTES_PER_ELEMENT`] and depends on what the scene has.
+pub struct Place<T: Real, M: Model<T>> {
+    pub(crate) element: Element<T, M>,
+    pub(crate) work: Work<T, M>,
+}
+
+impl<T: Real, M: Model<T>> Place<T, M> {
+    /// Are the fields of the element well inside the number format? Moments may balance where they are not.
+    pub(crate) fn is_finite(&self, state: usize, ratio: &Ratio<T>) -> bool {
+        let State { e, d } = self.work.states[state];
+        let Node { u, tau, q, charge } = self.work.node;
+        let (tau, charge) = (tau.get(), charge.get());
+        let slope = self.element.deforming_force(e).y() / self.element.bending.yy;
+        let bending = d.x().abs() + d.y().abs() + slope.abs() * (T::one() + self.element.h);
+        let electric = u.get().abs() + tau.abs() + q.get().abs() + charge.abs();
+        let sum = bending + electric + ratio.sigma(tau, charge).abs();
+        (sum * T::of(1e8)).is_finite()
+    }
+}
+
+impl<T: Real, M: Model<T>> Clone for Place<T, M> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<T: Real, M: Model<T>> Copy for Place<T, M> {}
+
+impl<T: Real, M: Model<T>> Default for Place<T, M> {
+    fn default() -> Self {
+        Self { element: Element::blank(), work: Work::default() }
+    }
+}
+
+/// Memory for scenes of type `M` with up to `N` elements, coarser meshes included, without an allocator.
+pub struct Workspace<T: Real, M: Model<T>, const N: usize> {
+    places: [Place<T, M>; N],
+}
+
+impl<T: Real, M: Model<T>, const N: usize> Workspace<T, M, N> {
+    /// Memory per element in bytes.
+    pub const BYTES_PER_ELEMENT: usize = size_of::<Place<T, M>>();
+
+    /// Empty memory.
+    #[must_use]
+    pub fn new() -> Self {
+        const { assert!(N > 0, "a workspace holds one element at least") };
+        Self { places: [Place::default(); N] }
+    }
+}
+
+impl<T: Real, M: Model<T>, const N: usize> Default for Workspace<T, M, N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Memory that a solve can use.
+pub trait Storage<T: Real, M: Model<T>> {
+    /// Room for `elements` of the mesh and the coarser meshes, if it can be had; else what there is.
+    fn places(&mut self, elements: usize) -> &mut [Place<T, M>];
+}
+
+impl<T: Real, M: Model<T>, const N: usize> Storage<T, M> for Workspace<T, M, N> {
+    fn places(&mut self, _: usize) -> &mut [Place<T, M>] {
+        &mut self.places
+    }
+}
+
+impl<T: Real, M: Model<T>> Storage<T, M> for [Place<T, M>] {
+    fn places(&mut self, _: usize) -> &mut Self {
+        self
+    }
+}
+
+/// Memory on the heap, which grows when a scene is laid into it and never during a solve.
+#[cfg(feature = "alloc")]
+pub struct HeapWorkspace<T: Real, M: Model<T>> {
+    places: alloc::vec::Vec<Place<T, M>>,
+}
+
+#[cfg(feature = "alloc")]
+impl<T: Real, M: Model<T>> HeapWorkspace<T, M> {
+    /// Memory per element in bytes.
+    pub const BYTES_PER_ELEMENT: usize = size_of::<Place<T, M>>();
+
+    /// Empty memory.
+    #[must_use]
+    pub fn new() -> Self {
+        Self { places: alloc::vec::Vec::new() }
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl<T: Real, M: Model<T>> Default for HeapWorkspace<T, M> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl<T: Real, M: Model<T>> Storage<T, M> for HeapWorkspace<T, M> {
+    fn places(&mut self, elements: usize) -> &mut [Place<T, M>] {
+        let room = elements.saturating_add(elements / 3).saturating_add(8);
+        if self.places.len() < room {
+            self.places.resize(room, Place::default());
+        }
+        &mut self.places
+    }
+}

@@ -1,0 +1,186 @@
+//! The general 4x4 block of the coupled system: unknowns (w, theta, u, q); u and q are carried unchanged.
+//!
+//! The tangent of the coupled problem is not symmetric, so pivots are divided by Gaussian elimination with
+//! row exchanges after an equilibration by powers of two, which extreme units call for.
+
+use super::{Block, Stamp};
+use crate::real::{Quad, Real, Square};
+
+/// The block of the coupled system.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(not(test), allow(dead_code, reason = "the coupled Newton method builds on it"))]
+pub(crate) struct Coupled;
+
+type Rows<T> = [[T; 4]; 4];
+
+fn rows<T: Real>(m: &T::Mat4) -> Rows<T> {
+    m.turned().columns()
+}
+
+fn matrix<T: Real>(rows: Rows<T>) -> T::Mat4 {
+    T::Mat4::of(rows).turned()
+}
+
+/// A^-1 [B | v] over the rows and columns that are not held; held rows of the result are zero.
+fn eliminate<T: Real>(a: &T::Mat4, b: &T::Mat4, v: T::Vec4, held: [bool; 4]) -> Option<(T::Mat4, T::Vec4)> {
+    let (mut a, mut b, mut v) = (rows::<T>(a), rows::<T>(b), v.array());
+    for i in 0..4 {
+        if held[i] {
+            // The held unknown is zero: its row says so, its column no longer matters.
+            for j in 0..4 {
+                a[i][j] = T::zero();
+                a[j][i] = T::zero();
+                b[i][j] = T::zero();
+            }
+            a[i][i] = T::one();
+            v[i] = T::zero();
+        }
+    }
+    for i in 0..4 {
+        // Rows are scaled to size one, so that pivots of different units compare.
+        let size = a[i].iter().fold(T::zero(), |m, x| m.max(x.abs()));
+        if !(size > T::zero() && size.is_finite()) {
+            return None;
+        }
+        a[i] = a[i].map(|x| x / size);
+        b[i] = b[i].map(|x| x / size);
+        v[i] = v[i] / size;
+    }
+    for i in 0..4 {
+        let mut best = i;
+        for r in i + 1..4 {
+            if a[r][i].abs() > a[best][i].abs() {
+                best = r;
+            }
+        }
+        a.swap(i, best);
+        b.swap(i, best);
+        v.swap(i, best);
+        let pivot = a[i][i];
+        if pivot == T::zero() || !pivot.is_finite() {
+            return None;
+        }
+        for r in i + 1..4 {
+            let ratio = a[r][i] / pivot;
+            for j in 0..4 {
+                if j > i {
+                    a[r][j] = a[r][j] - ratio * a[i][j];
+                }
+                b[r][j] = b[r][j] - ratio * b[i][j];
+            }
+            v[r] = v[r] - ratio * v[i];
+        }
+    }
+    for i in (0..4).rev() {
+        for k in i + 1..4 {
+            let (row, above) = (b[k], &mut b[i]);
+            for (x, y) in above.iter_mut().zip(row) {
+                *x = *x - a[i][k] * y;
+            }
+            v[i] = v[i] - a[i][k] * v[k];
+        }
+        b[i] = b[i].map(|x| x / a[i][i]);
+        v[i] = v[i] / a[i][i];
+    }
+    let finite = v.iter().chain(b.iter().flatten()).all(|x| x.is_finite());
+    finite.then(|| (matrix::<T>(b), T::Vec4::of(v)))
+}
+
+impl<T: Real> Block<T> for Coupled {
+    type Vector = T::Vec4;
+    type Matrix = T::Mat4;
+    type Energy = T::Mat4;
+    type Held = [bool; 4];
+
+    const NONE: T::Mat4 = T::Mat4::ZERO;
+    const NOTHING: T::Mat4 = T::Mat4::ZERO;
+
+    fn of_energy(s: &T::Mat4) -> T::Mat4 {
+        *s
+    }
+
+    fn carry(h: T, v: T::Vec4) -> T::Vec4 {
+        let [w, theta, u, q] = v.array();
+        T::Vec4::of([w - h * theta, theta, u, q])
+    }
+
+    fn carry_back(h: T, v: T::Vec4) -> T::Vec4 {
+        let [f, m, sigma, charge] = v.array();
+        T::Vec4::of([f, m - h * f, sigma, charge])
+    }
+
+    fn carry_right(s: &T::Mat4, h: T) -> T::Mat4 {
+        Self::matrix_carry(s, h)
+    }
+
+    fn carry_left(s: &T::Mat4, h: T, _: &T::Mat4) -> T::Mat4 {
+        Self::carry_matrix(h, s)
+    }
+
+    fn congruence(s: &T::Mat4, h: T) -> T::Mat4 {
+        Self::carry_matrix(h, &Self::matrix_carry(s, h))
+    }
+
+    fn carry_matrix(h: T, m: &T::Mat4) -> T::Mat4 {
+        T::Mat4::of(m.columns().map(|[f, m, sigma, charge]| [f, m - h * f, sigma, charge]))
+    }
+
+    fn matrix_carry(m: &T::Mat4, h: T) -> T::Mat4 {
+        let [w, mut theta, u, q] = m.columns();
+        for (turned, straight) in theta.iter_mut().zip(w) {
+            *turned = *turned - h * straight;
+        }
+        T::Mat4::of([w, theta, u, q])
+    }
+
+    fn energy_times(s: &T::Mat4, v: T::Vec4) -> T::Vec4 {
+        *s * v
+    }
+
+    fn sizes(s: &T::Mat4, v: T::Vec4, b: T::Vec4) -> T::Vec4 {
+        let abs = s.columns().map(|c| c.map(T::abs));
+        let sum = T::Mat4::of(abs) * T::Vec4::of(v.array().map(T::abs));
+        sum + T::Vec4::of(b.array().map(T::abs))
+    }
+
+    fn times(m: &T::Mat4, v: T::Vec4) -> T::Vec4 {
+        *m * v
+    }
+
+    fn negate(m: &T::Mat4) -> T::Mat4 {
+        T::Mat4::ZERO - *m
+    }
+
+    fn divide(a: &T::Mat4, b: &T::Mat4, v: T::Vec4) -> Option<(T::Mat4, T::Vec4)> {
+        eliminate::<T>(a, b, v, [false; 4])
+    }
+
+    fn divide_free(a: &T::Mat4, b: &T::Mat4, v: T::Vec4, held: [bool; 4]) -> Option<(T::Mat4, T::Vec4)> {
+        eliminate::<T>(a, b, v, held)
+    }
+
+    fn holds(held: [bool; 4]) -> bool {
+        held != [false; 4]
+    }
+
+    fn reduce(s: &T::Mat4, left: &T::Mat4, gain: &T::Mat4) -> T::Mat4 {
+        *s - *left * *gain
+    }
+
+    fn far_end(stamp: &Stamp<T, Self>, h: T) -> T::Mat4 {
+        Self::congruence(&stamp.ee, h)
+            + stamp.rr
+            + <Self as Block<T>>::negate(
+                &(Self::carry_matrix(h, &stamp.er) + Self::matrix_carry(&stamp.re, h)),
+            )
+    }
+
+    fn lower(stamp: &Stamp<T, Self>) -> T::Mat4 {
+        stamp.re
+    }
+
+    fn outweighs(s: &T::Mat4, element: &T::Mat4) -> bool {
+        let (s, k) = (s.columns(), element.columns());
+        (0..4).any(|i| s[i][i].abs() > T::of(8.0) * k[i][i].abs())
+    }
+}
