@@ -1,0 +1,203 @@
+//! The command line as a user meets it: exit statuses, messages, contracts.
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic, reason = "a test that panics has failed")]
+#![cfg(feature = "cli")]
+
+use serde_json::Value;
+use std::path::Path;
+use std::process::{Command, Output};
+
+const HALVES: &str = include_str!("../scenes/halves.toml");
+
+fn piezobeam(folder: &Path, line: &str) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_piezobeam"))
+        .args(line.split_whitespace())
+        .current_dir(folder)
+        .output()
+        .expect("the program runs")
+}
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    write(&folder, "halves.toml", HALVES);
+    folder
+}
+
+fn write(folder: &tempfile::TempDir, name: &str, text: &str) {
+    std::fs::write(folder.path().join(name), text).expect("a file");
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn json(folder: &tempfile::TempDir, line: &str) -> Value {
+    let output = piezobeam(folder.path(), line);
+    assert_eq!(output.status.code(), Some(0), "{line}: {}", text(&output.stderr));
+    serde_json::from_slice(&output.stdout).expect("JSON")
+}
+
+/// The one line that a run with exit status 2 says.
+fn refusal(folder: &tempfile::TempDir, line: &str) -> String {
+    let output = piezobeam(folder.path(), line);
+    assert_eq!(output.status.code(), Some(2), "{line}: {}", text(&output.stdout));
+    assert!(output.stdout.is_empty(), "{line} printed a result");
+    text(&output.stderr).trim_end().to_owned()
+}
+
+#[test]
+fn a_solve_gives_the_reference_in_json() {
+    let folder = folder();
+    let value = json(&folder, "solve halves.toml --elements 1000 --format json --samples 33");
+    assert_eq!(value["status"], "converged");
+    assert_eq!(value["elements"], 1000);
+    let reference: Value = serde_json::from_str(include_str!("reference/partial.json")).expect("JSON");
+    for (column, name) in [("bending", "xi"), ("stretching", "u"), ("potential", "q")] {
+        let list = |v: &Value| -> Vec<f64> {
+            v.as_array().expect("a list").iter().map(|v| v.as_f64().expect("a number")).collect()
+        };
+        let got = list(&value["samples"][column]);
+        let want = list(&reference["reference"][name]);
+        let size = want.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        let error = got.iter().zip(&want).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
+        assert!(error <= 1e-9 * size, "{column}: {error:e} of {size:e}");
+    }
+    let edge = value["contact"]["zones"][0][1].as_f64().expect("a zone");
+    assert!((edge - reference["crossings"]["eta=0"][0].as_f64().expect("a crossing")).abs() < 1e-8);
+    assert_eq!(value["uniqueness"]["certified"], true);
+}
+
+#[test]
+fn what_a_scene_has_not_is_null() {
+    let folder = folder();
+    write(&folder, "free.toml", "length = 2.0\n[beam]\nbending = 3.0\n[load]\ntransverse = \"1 + x\"\n");
+    let value = json(&folder, "solve free.toml --format json --samples 5");
+    for name in ["stretching", "potential", "axial_force", "electric_displacement"] {
+        assert_eq!(value["samples"][name], Value::Null, "{name}");
+    }
+    assert_eq!(value["contact"], Value::Null);
+    assert_eq!(value["elements"], 200);
+}
+
+#[test]
+fn every_shape_of_profile_is_the_same_scene() {
+    let folder = folder();
+    let shapes = [
+        "5000.0",
+        "{ polynomial = [5000.0] }",
+        "{ breaks = [0.5], values = [5000.0, 5000.0] }",
+        "{ breaks = [0.5], polynomials = [[5000.0], [5000.0]] }",
+        "{ x = [0.0, 0.5, 1.0], y = [5000.0, 5000.0, 5000.0] }",
+        "\"5000 + 0*x\"",
+    ];
+    let mut found = Vec::new();
+    for shape in shapes {
+        let scene = HALVES.replacen("bending = 5000.0", &format!("bending = {shape}"), 1);
+        write(&folder, "shape.toml", &scene);
+        let value = json(&folder, "solve shape.toml --elements 100 --format json --samples 3");
+        found.push(value["samples"]["bending"][1].as_f64().expect("a number"));
+    }
+    for value in &found {
+        assert!((value - found[0]).abs() <= 1e-14, "{found:?}");
+    }
+}
+
+#[test]
+fn single_precision_is_single() {
+    let folder = folder();
+    let value = json(&folder, "solve halves.toml --elements 100 --precision f32 --format json");
+    assert_eq!(value["precision"], "f32");
+    let middle = value["samples"]["bending"][16].as_f64().expect("a number");
+    assert!((middle + 0.06371378).abs() < 1e-5, "{middle}");
+}
+
+#[test]
+fn not_converging_exits_with_one_and_still_prints() {
+    let folder = folder();
+    let output = piezobeam(folder.path(), "solve halves.toml --stop 1e-17 --format json");
+    assert_eq!(output.status.code(), Some(1));
+    let value: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(value["status"], "tolerance_below_floor");
+    assert!(value["reason"].as_str().is_some_and(|r| r.contains("rounding floor")));
+    assert!(value["samples"]["bending"][16].as_f64().is_some_and(|v| (v + 0.0637138).abs() < 1e-6));
+    assert!(text(&output.stderr).contains("not converged"));
+}
+
+#[test]
+fn bad_scenes_are_refused_with_file_line_field_and_hint() {
+    let folder = folder();
+    let cases = [
+        ("bending = 5000.0", "bending = -1.0", "bad.toml:6: beam.bending at x = "),
+        ("stiffness = 1e8", "stifness = 1e8", "bad.toml:"),
+        ("mu1 = 1.0", "mu1 = -1.0", "conduction.mu1 at x = "),
+        ("breaks = [0.5]", "breaks = [1.5]", "load.transverse"),
+        ("permittivity = 1.0", "", "beam.permittivity: expected because of potential, found nothing"),
+        ("stiffness = 1e8", "stiffness = 1e8\ngap = { breaks = [0.5], values = [0.0, 1.0] }", "found a jump"),
+        (
+            "stiffness = 1e8",
+            "stiffness = 1e8\nexponent = 0.5",
+            "foundation.exponent: expected a finite number >= 1",
+        ),
+    ];
+    for (from, to, expected) in cases {
+        assert!(HALVES.contains(from), "{from}");
+        write(&folder, "bad.toml", &HALVES.replacen(from, to, 1));
+        let message = refusal(&folder, "solve bad.toml");
+        assert!(message.contains("bad.toml:") && message.contains(expected), "{to}: {message}");
+    }
+    write(&folder, "bad.toml", &HALVES.replacen("stiffness", "stifness", 1));
+    assert!(refusal(&folder, "solve bad.toml").contains("stiffness"), "the nearest key is named");
+}
+
+#[test]
+fn files_that_are_no_scene_are_refused() {
+    let folder = folder();
+    std::fs::create_dir(folder.path().join("sub")).expect("a folder");
+    assert!(refusal(&folder, "solve sub").contains("directory"));
+    assert!(refusal(&folder, "solve nowhere.toml").contains("nowhere.toml"));
+    write(&folder, "large.toml", &"# filler\n".repeat(200_000));
+    assert!(refusal(&folder, "solve large.toml").contains("MiB"));
+    #[cfg(unix)]
+    assert!(refusal(&folder, "solve /dev/zero").contains("/dev/zero"));
+}
+
+#[test]
+fn outputs_appear_whole_and_nothing_is_overwritten() {
+    let folder = folder();
+    let run = |line: &str| piezobeam(folder.path(), line).status.code();
+    let line = "solve halves.toml --elements 50 --format csv --out a.csv --plot a.svg";
+    assert_eq!(run(line), Some(0));
+    let page = std::fs::read_to_string(folder.path().join("a.svg")).expect("a picture");
+    assert!(roxmltree::Document::parse(&page).is_ok());
+    std::fs::write(folder.path().join("a.csv"), "mine").expect("a file");
+    std::fs::remove_file(folder.path().join("a.svg")).expect("removed");
+    assert!(refusal(&folder, line).contains("--force"));
+    assert_eq!(std::fs::read_to_string(folder.path().join("a.csv")).expect("a file"), "mine");
+    assert!(!folder.path().join("a.svg").exists(), "one refused output stops the other");
+    assert_eq!(run(&format!("{line} --force")), Some(0));
+    let csv = std::fs::read_to_string(folder.path().join("a.csv")).expect("a file");
+    assert_eq!(csv.lines().count(), 34);
+}
+
+#[test]
+fn the_main_job_writes_eight_pictures() {
+    let folder = folder();
+    let output = piezobeam(folder.path(), "paper --out figures");
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let said = text(&output.stdout);
+    assert!(said.contains("0.318538") && said.contains("762.19279 kN"), "{said}");
+    let pictures = std::fs::read_dir(folder.path().join("figures")).expect("a folder").count();
+    assert_eq!(pictures, 8);
+}
+
+#[test]
+fn time_and_check_say_what_they_promise() {
+    let folder = folder();
+    let value = json(&folder, "time halves.toml --elements 50 --repeat 3 --format json");
+    for key in ["best_ns", "median_ns", "iterations", "element_visits"] {
+        assert!(value[key].as_f64().is_some_and(|v| v > 0.0), "{key}");
+    }
+    let output = piezobeam(folder.path(), "check halves.toml");
+    let said = text(&output.stdout);
+    assert!(said.contains("the scene is sound") && said.contains("N m^2/V^2"), "{said}");
+    assert!(said.contains("certified") && said.contains("warning: the axial strain"), "{said}");
+}

@@ -1,0 +1,87 @@
+//! The one table of what the integration tests allow, and why.
+
+/// Stiffness [N/m^2] from which the suite's foundations count as rigid: their boundary layers are thinner than
+/// an element of a thousand, so that fields are held to the looser bounds below.
+pub const RIGID: f64 = 1e12;
+
+/// Relative error of xi, u and q against the suite at N = 1000: the discretisation leaves 1e-11.
+pub const FIELD: f64 = 1e-9;
+/// The same where the foundation is rigid: the boundary layer is not resolved, 1e-9 is measured at 1e16.
+pub const FIELD_RIGID: f64 = 1e-6;
+/// Relative error of the slope against the suite: one derivative of xi.
+pub const SLOPE: f64 = 1e-7;
+/// Relative error of moment and shear against the suite: they follow from statics and the contact's force.
+pub const STATIC: f64 = 1e-5;
+/// The same where the foundation is rigid: the shear jumps in the layer at the contact's edge.
+pub const STATIC_RIGID: f64 = 1e-4;
+/// Relative error of D against the suite, beside `DISPLACEMENT_ROUNDING`: D is fed by the squared penetration.
+pub const DISPLACEMENT: f64 = 1e-6;
+/// Rounding of D, over the size of eps q', which cancels against P u' in it.
+pub const DISPLACEMENT_ROUNDING: f64 = 1e-13;
+/// Relative error of contact force and bending energy: integrals of fields that are good to `FIELD`.
+pub const RESULTANT: f64 = 1e-9;
+/// The same where the foundation is rigid: the force is k times a penetration a few units of rounding above it.
+pub const RESULTANT_RIGID: f64 = 1e-4;
+/// Ends of contact zones, over the length: where xi' is not small an edge moves by as much as xi.
+pub const EDGE: f64 = 1e-8;
+/// The same where the foundation is rigid: xi leaves the gap so flat that an error of 1e-9 moves the edge far.
+pub const EDGE_RIGID: f64 = 1e-5;
+/// Ends of contact zones this near to a clamp, over the length, are the clamp's: the penetration is zero there.
+pub const CLAMP: f64 = 1e-9;
+/// What is left of the sum of all transverse forces over the sum of their sizes, up to N = 1000: rounding of
+/// the end forces, which know the element's 1/h.
+pub const EQUILIBRIUM: f64 = 1e-11;
+/// Element visits of a solve: so many per element and so many beside, whatever the stiffness.
+pub const VISITS: (usize, usize) = (8, 2000);
+
+/// Nodal error over the maximum for the free beam at any N up to a million: a few roundings per node carried
+/// along, of which the relative unknowns keep the sum bounded.
+pub const FREE: f64 = 1e-12;
+/// Fields of a beam without contact on a few elements: all integrals are of polynomials, only rounding is left.
+pub const EXACT: f64 = 1e-12;
+/// Full contact against its closed form: rounding and the closed form's own cancellation. The error of the
+/// cubic, `WINKLER_ORDER` K / N^4 with K = k L^4 / C, is allowed beside it.
+pub const WINKLER: f64 = 1e-11;
+/// Constant of the cubic element's error in full contact: h^4 w'''' / 384 in an element, less at nodes.
+pub const WINKLER_ORDER: f64 = 1.0 / 384.0;
+/// Mirrored scenes: nodal values differ by rounding alone, fields between nodes by the quadrature of the law's
+/// r^1.5, which starts from the left node.
+pub const MIRROR: f64 = 1e-8;
+/// Without contact everything is linear in the loads; sums differ by rounding.
+pub const SUPERPOSITION: f64 = 1e-11;
+/// A beam of smoothly varying stiffness in full contact on 64 elements against 2048: order four, whose constant
+/// grows with the ratio of largest to smallest stiffness, 7 here; 2e-7 is measured.
+pub const VARIABLE: f64 = 1e-6;
+/// A step in C on a mesh with a node at it, against its closed form: only rounding is left.
+pub const STEPPED: f64 = 1e-11;
+/// Single precision: nodal error of the free beam at any N, in units of rounding: that of the samples of load
+/// and stiffness and of the nodes' own x. About 4 are measured.
+pub const SINGLE_UNITS: f32 = 16.0;
+
+/// Order of xi at nodes in partial contact: four, less what the moving contact edge perturbs.
+pub const ORDER: f64 = 3.7;
+/// Order where the law has an unbounded second derivative at the contact's edge (Hertz, r^1.5).
+pub const ORDER_HERTZ: f64 = 3.0;
+/// Errors below this share of the maximum are rounding: no order can be read off them.
+pub const ROUNDING: f64 = 2e-12;
+
+/// Largest equilibrium error of random scenes: forces and reactions cancel to rounding times 1/h's conditioning.
+pub const RANDOM_EQUILIBRIUM: f64 = 1e-8;
+/// How much the integral of the squared penetration may grow with k relatively: discretisation of two scenes.
+pub const MONOTONE_IN_K: f64 = 1e-3;
+/// An integral of the squared penetration below this is none: the square of what rounding leaves of a gap.
+pub const UNTOUCHED: f64 = 1e-24;
+/// Two meshes, N and 4 N with N at least 20, agree to this share of the largest bending ...
+pub const REFINED: f64 = 2e-2;
+/// Energy products that have to be >= 0 may be below by this share of the sum of their parts: discretisation
+/// and residuals of both solves.
+pub const MONOTONE: f64 = 1e-8;
+/// Beams on a monotone foundation move at most as the free beam under the load's difference: rounding beside.
+pub const CONTINUITY: f64 = 1e-6;
+/// Concentrated loads anywhere: a load near a clamp leaves a short element, whose rounding is relative to a
+/// small deflection.
+pub const POINT: f64 = 1e-10;
+/// Residual that a free beam reaches in double precision whatever the stop.
+pub const FLOOR: f64 = 1e-12;
+/// Fifty breaks within 5e-13 of the length against a single one: the load between them is 3 off at most.
+pub const CROWD: f64 = 1e-11;

@@ -1,0 +1,371 @@
+//! How a solve ends when it cannot converge, and what is said of bad input.
+#![allow(clippy::expect_used, reason = "a test that cannot go on fails")]
+
+mod common;
+
+use common::{named, points, tolerances as tol};
+use piezobeam::{
+    Beam, Conduction, Curve, Foundation, Function, HeapWorkspace, Law, Linear, Load, Mesh, Model, PointLoad,
+    Polynomial, Potential, Power, Problem, Real, Report, Scene, Settings, Status, Steps, Table, Tabulated,
+};
+use std::cell::Cell;
+
+/// Solves, and checks what holds of every end: a name, a sentence, finite fields.
+fn ends<T: Real, M: Model<T>>(scene: M, mesh: Mesh<'_, T>, settings: Settings<T>) -> Report<T> {
+    let problem = Problem::new(scene, mesh).expect("a scene without mistakes");
+    let mut memory = HeapWorkspace::new();
+    let solution = problem.solve(&mut memory, &settings).expect("settings in range");
+    let report = *solution.report();
+    for x in points(32, problem.scene().length().f64()) {
+        let f = solution.at(T::of(x));
+        let finite = [f.bending, f.slope, f.moment, f.shear].into_iter().all(T::is_finite);
+        assert!(finite, "{report:?}: {f:?}");
+    }
+    let name = report.status.name();
+    assert!(name.chars().all(|c| c.is_ascii_lowercase() || c == '_'), "{name}");
+    assert!(!report.status.to_string().is_empty());
+    report
+}
+
+fn plain(f: f64) -> Load<f64> {
+    Load { transverse: f, axial: (), points: () }
+}
+
+/// A stop and the default cap.
+fn stop<T: Real>(stop: T) -> Settings<T> {
+    Settings { stop, ..Settings::default() }
+}
+
+#[test]
+fn a_cap_on_visits_is_kept_and_said() {
+    let case = named("sweep-1e16");
+    for most in [0, 1, 49, 100, 500, 1000, 5000] {
+        let settings = Settings { max_visits: Some(most), ..Settings::default() };
+        let report = ends(&case.scene, Mesh::uniform(1000), settings);
+        assert_eq!(report.status, Status::VisitLimit, "{most}");
+        assert_eq!(report.status.name(), "visit_limit");
+        assert!(report.element_visits <= most, "{} > {most}", report.element_visits);
+        assert!(report.residual > Settings::<f64>::default().stop);
+    }
+}
+
+#[test]
+fn a_halted_solve_knows_the_residual_of_what_it_returns() {
+    let case = named("sweep-1e08");
+    let settings = Settings { max_visits: Some(500), ..Settings::default() };
+    let report = ends(&case.scene, Mesh::uniform(1000), settings);
+    assert!(report.residual.is_finite(), "{report:?}");
+}
+
+#[test]
+fn more_than_two_way_conduction_allows_is_stagnation() {
+    let report = ends(&named("stubborn").scene, Mesh::uniform(200), Settings::default());
+    assert!(matches!(report.status, Status::Converged | Status::Stagnation), "{report:?}");
+    assert_eq!(Status::Stagnation.name(), "stagnation");
+    assert!(Status::Stagnation.to_string().starts_with("iterations stopped reducing the residual"));
+}
+
+#[test]
+fn a_law_that_is_not_finite_once_is_named_with_its_element() {
+    for nth in [1, 2, 10, 100, 1000] {
+        let calls = Cell::new(0);
+        let law = Law(|_: f64, r: f64| {
+            calls.set(calls.get() + 1);
+            (if calls.get() == nth { f64::NAN } else { 1e6 * r }, 1e6)
+        });
+        let scene =
+            Scene::new(1.0, Beam::elastic(5.0)).foundation(Foundation { law, gap: () }).load(plain(1e3));
+        let report = ends(scene, Mesh::uniform(30), Settings::default());
+        let Status::LawNotFinite { element } = report.status else {
+            // The call may be one that only looks for the largest slope.
+            assert_eq!(report.status, Status::Converged, "call {nth}");
+            continue;
+        };
+        assert!(element < 30);
+        assert_eq!(report.status.name(), "law_not_finite");
+    }
+    for law in [
+        |_: f64, _: f64| (f64::INFINITY, 1.0),
+        |_: f64, r: f64| (r, f64::INFINITY),
+        |_: f64, r: f64| (r, f64::NAN),
+    ] {
+        let scene = Scene::new(1.0, Beam::elastic(5.0)).foundation(Foundation { law: Law(law), gap: 0.1 });
+        let report = ends(scene.load(plain(1e3)), Mesh::uniform(30), Settings::default());
+        assert!(matches!(report.status, Status::LawNotFinite { .. }), "{report:?}");
+    }
+}
+
+#[test]
+fn a_law_that_decreases_is_named_with_its_element() {
+    for law in [|_: f64, r: f64| (-r, 1.0), |_: f64, r: f64| (r, -1.0)] {
+        let scene = Scene::new(1.0, Beam::elastic(5.0)).foundation(Foundation { law: Law(law), gap: () });
+        let report = ends(scene.load(plain(1e3)), Mesh::uniform(10), Settings::default());
+        let Status::LawNotMonotone { element } = report.status else { unreachable!("{report:?}") };
+        assert!(element < 10);
+        assert_eq!(report.status.name(), "law_not_monotone");
+    }
+}
+
+#[test]
+fn a_stop_below_rounding_is_said_and_the_best_state_kept() {
+    let scene = Scene::new(1.0, Beam::elastic(5.0)).load(plain(1e3));
+    let single =
+        Scene::new(1.0_f32, Beam::elastic(5.0)).load(Load { transverse: 3.0_f32, axial: (), points: () });
+    for n in [3, 10, 100, 1000] {
+        for small in [1e-15, 1e-16, 1e-17] {
+            let report = ends(scene, Mesh::uniform(n), stop(small));
+            if report.status != Status::Converged {
+                assert_eq!(report.status, Status::ToleranceBelowFloor, "N = {n}, {small:e}: {report:?}");
+                assert!(report.residual <= tol::FLOOR, "{report:?}");
+            }
+        }
+        // Three elements may balance to the last bit.
+        let report = ends(single, Mesh::uniform(n), stop(1e-9));
+        let expected = if report.residual == 0.0 { Status::Converged } else { Status::ToleranceBelowFloor };
+        assert_eq!(report.status, expected, "N = {n}: {report:?}");
+    }
+    let report = ends(&named("partial").scene, Mesh::uniform(1000), stop(1e-17));
+    assert_eq!(report.status, Status::ToleranceBelowFloor, "{report:?}");
+}
+
+#[test]
+fn a_stop_below_rounding_is_never_converged() {
+    let scene = Scene::new(1.0, Beam::elastic(5.0)).load(plain(1e3));
+    for n in [100, 1000] {
+        let report = ends(scene, Mesh::uniform(n), stop(1e-17));
+        assert_ne!(report.status, Status::Converged, "{report:?}");
+        assert!(report.residual > 1e-17);
+    }
+    assert_eq!(Status::ToleranceBelowFloor.name(), "tolerance_below_floor");
+}
+
+#[test]
+fn coefficients_beyond_the_number_format_are_a_breakdown() {
+    for stiffness in [1e-308, 1e-320] {
+        let problem =
+            Problem::new(Scene::new(1.0, Beam::elastic(stiffness)).load(plain(1e3)), Mesh::uniform(100));
+        let problem = problem.expect("a scene without mistakes");
+        let mut memory = HeapWorkspace::new();
+        let solution = problem.solve(&mut memory, &Settings::default()).expect("settings in range");
+        assert!(matches!(solution.report().status, Status::Breakdown { .. }), "{:?}", solution.report());
+        assert_eq!(solution.report().status.name(), "numerical_breakdown");
+    }
+}
+
+#[test]
+fn a_stiffness_that_no_element_can_hold_is_refused() {
+    let scene = Scene::new(1.0, Beam::elastic(1e305)).load(plain(1e3));
+    let problem = Problem::new(scene, Mesh::uniform(100)).expect("the numbers themselves are fine");
+    let said = problem.solve(&mut HeapWorkspace::new(), &Settings::default()).err().map(|e| e.to_string());
+    let expected = "expected a stiffness C for which C / h^3 fits the number format, found 1e305";
+    assert!(said.is_some_and(|said| said.starts_with("beam.bending at x = ") && said.ends_with(expected)));
+}
+
+#[test]
+fn an_overflow_is_never_converged() {
+    for (stiffness, f) in [(1e-300, 1e300), (1e-308, 1e3)] {
+        let scene = Scene::new(1.0, Beam::elastic(stiffness)).load(plain(f));
+        let problem = Problem::new(scene, Mesh::uniform(100)).expect("a scene without mistakes");
+        let mut memory = HeapWorkspace::new();
+        let solution = problem.solve(&mut memory, &Settings::default()).expect("settings in range");
+        assert_ne!(solution.report().status, Status::Converged, "xi = {}", solution.at(0.5).bending);
+    }
+}
+
+#[test]
+fn settings_out_of_range_are_refused() {
+    let problem = Problem::new(Scene::new(1.0, Beam::elastic(1.0)), Mesh::uniform(2)).expect("a scene");
+    let mut memory = HeapWorkspace::new();
+    for (bad, found) in [(0.0, "0"), (-1.0, "-1"), (1.0, "1"), (f64::NAN, "NaN"), (f64::INFINITY, "inf")] {
+        let error = problem.solve(&mut memory, &stop(bad)).err().expect("a refusal");
+        assert_eq!(error.to_string(), format!("stop: expected a number between 0 and 1, found {found}"));
+    }
+}
+
+/// What is said of a scene on a mesh, if it is refused.
+fn refusal<M: Model<f64>>(scene: M, mesh: Mesh<'_, f64>) -> String {
+    let said = match Problem::new(scene, mesh) {
+        Err(error) => Some(error.to_string()),
+        Ok(problem) => problem.prepare(&mut HeapWorkspace::new()).err().map(|e| e.to_string()),
+    };
+    said.unwrap_or_else(|| "nothing".to_owned())
+}
+
+fn refused<M: Model<f64>>(scene: M, said: &str) {
+    assert_eq!(refusal(scene, Mesh::uniform(1)), said);
+}
+
+fn beam(bending: f64, axial: f64, piezo: f64, permittivity: f64) -> Scene<f64, Beam<f64, f64, f64, f64>> {
+    Scene::new(1.0, Beam { bending, axial, piezo, permittivity })
+}
+
+/// Where the only element of [0, 1] samples first.
+const AT: &str = "at x = 0.9305681557970262: expected a";
+const NAN: f64 = f64::NAN;
+const INF: f64 = f64::INFINITY;
+
+#[test]
+fn bad_beams_are_refused_by_field_place_and_value() {
+    for (length, found) in [(0.0, "0"), (-1.0, "-1"), (NAN, "NaN"), (INF, "inf")] {
+        let said = format!("length: expected a finite number > 0, found {found}");
+        refused(Scene::new(length, Beam::elastic(1.0)), &said);
+    }
+    for (bad, kind, found) in [
+        (-1.0, "number > 0", "-1"),
+        (0.0, "number > 0", "0"),
+        (NAN, "finite number", "NaN"),
+        (INF, "finite number", "inf"),
+    ] {
+        refused(beam(bad, 1.0, 1.0, 1.0), &format!("beam.bending {AT} {kind}, found {found}"));
+        refused(beam(1.0, bad, 1.0, 1.0), &format!("beam.axial {AT} {kind}, found {found}"));
+        refused(beam(1.0, 1.0, 1.0, bad), &format!("beam.permittivity {AT} {kind}, found {found}"));
+    }
+    refused(beam(1.0, 1.0, NAN, 1.0), &format!("beam.piezo {AT} finite number, found NaN"));
+    refused(
+        Scene::new(1.0, Beam::elastic(Polynomial(&[1.0, NAN]))),
+        "beam.bending[1]: expected a finite number, found NaN",
+    );
+    let steps = |breaks, values| Scene::new(1.0, Beam::elastic(Steps { breaks, values }));
+    let order = "expected breaks that increase strictly inside (0, length), found";
+    refused(steps(&[0.5, 0.5], &[1.0; 3]), &format!("beam.bending[1]: {order} 0.5"));
+    refused(steps(&[0.0], &[1.0; 2]), &format!("beam.bending[0]: {order} 0"));
+    refused(steps(&[1.0], &[1.0; 2]), &format!("beam.bending[0]: {order} 1"));
+    refused(steps(&[NAN], &[1.0; 2]), &format!("beam.bending[0]: {order} NaN"));
+    refused(steps(&[0.5], &[1.0; 3]), "beam.bending: one value more than breaks: expected 2, found 3");
+    let table = |x, y| Scene::new(1.0, Beam::elastic(Table { x, y }));
+    refused(table(&[0.0, 1.0], &[1.0]), "beam.bending: as many y as x: expected 2, found 1");
+    refused(table(&[0.0], &[1.0]), "beam.bending: a table of two points at least: expected 2, found 1");
+    refused(table(&[0.1, 1.0], &[1.0; 2]), "beam.bending[0]: expected a table that starts at 0, found 0.1");
+    refused(
+        table(&[0.0, 0.5, 0.5, 1.0], &[1.0; 4]),
+        "beam.bending[2]: expected abscissae that increase, found 0.5",
+    );
+}
+
+#[test]
+fn bad_foundations_are_refused_by_field_place_and_value() {
+    let on = |stiffness, exponent| {
+        beam(1.0, 1.0, 1.0, 1.0).foundation(Foundation { law: Power { stiffness, exponent }, gap: () })
+    };
+    refused(on(-1.0, 1.0), &format!("foundation.stiffness {AT} number >= 0, found -1"));
+    refused(on(NAN, 1.0), &format!("foundation.stiffness {AT} finite number, found NaN"));
+    for (bad, found) in [(0.999, "0.999"), (NAN, "NaN"), (INF, "inf")] {
+        refused(on(1.0, bad), &format!("foundation.exponent: expected a finite number >= 1, found {found}"));
+    }
+    let scene = Scene::new(1.0, Beam::elastic(1.0));
+    let law = Linear(1.0);
+    refused(
+        scene.foundation(Foundation { law, gap: NAN }),
+        "foundation.gap at x = 0: expected a finite number, found NaN",
+    );
+    let gap = Curve(|x: f64| [x, 1.0, NAN]);
+    refused(
+        scene.foundation(Foundation { law, gap }),
+        &format!("foundation.gap {AT} finite number, found NaN"),
+    );
+    let gap = Steps { breaks: &[0.5], values: &[0.0, 1.0] };
+    let said = "foundation.gap at x = 0.5: expected a continuous function, found a jump from 0 to 1";
+    refused(scene.foundation(Foundation { law, gap }), said);
+    let tabulated = |penetration, pressure, said: &str| {
+        let law = Tabulated { penetration, pressure };
+        refused(scene.foundation(Foundation { law, gap: () }), &format!("foundation.law{said}"));
+    };
+    tabulated(&[0.0], &[0.0], ": as many pressures as penetrations, two at least: expected 2, found 1");
+    tabulated(
+        &[0.0, 1.0, 2.0],
+        &[0.0, 1.0],
+        ": as many pressures as penetrations, two at least: expected 3, found 2",
+    );
+    tabulated(&[0.1, 1.0], &[0.0, 1.0], "[0]: expected a law that is zero at penetration zero, found 0.1");
+    tabulated(&[0.0, 1.0], &[0.2, 1.0], "[0]: expected a law that is zero at penetration zero, found 0.2");
+    tabulated(&[0.0, 1.0, 2.0], &[0.0, 1.0, 0.5], "[2]: expected pressures that do not decrease, found 0.5");
+    tabulated(&[0.0, 1.0, 1.0], &[0.0, 1.0, 2.0], "[2]: expected penetrations that increase, found 1");
+    tabulated(&[0.0, NAN], &[0.0, 1.0], "[1]: expected penetrations that increase, found NaN");
+    tabulated(&[0.0, 1.0], &[0.0, INF], "[1]: expected pressures that do not decrease, found inf");
+}
+
+#[test]
+fn bad_conduction_and_potentials_are_refused_by_field_place_and_value() {
+    let with = |mu1, mu2, truncation, potential_truncation| {
+        beam(1.0, 1.0, 1.0, 1.0).conduction(Conduction { mu1, mu2, truncation, potential_truncation })
+    };
+    refused(with(-1.0, 1.0, 1.0, 1.0), &format!("conduction.mu1 {AT} number >= 0, found -1"));
+    refused(with(1.0, -2.0, 1.0, 1.0), &format!("conduction.mu2 {AT} number >= 0, found -2"));
+    refused(with(NAN, 1.0, 1.0, 1.0), &format!("conduction.mu1 {AT} finite number, found NaN"));
+    refused(with(1.0, INF, 1.0, 1.0), &format!("conduction.mu2 {AT} finite number, found inf"));
+    for (bad, found) in [(0.0, "0"), (-1.0, "-1"), (NAN, "NaN"), (INF, "inf")] {
+        let said = format!("expected a finite number > 0, found {found}");
+        refused(with(1.0, 1.0, bad, 1.0), &format!("conduction.truncation: {said}"));
+        refused(with(1.0, 1.0, 1.0, bad), &format!("conduction.potential_truncation: {said}"));
+    }
+    let between = |left, right| beam(1.0, 1.0, 1.0, 1.0).potential(Potential { left, right });
+    refused(between(NAN, 0.0), "potential.left: expected a finite number, found NaN");
+    refused(between(0.0, INF), "potential.right: expected a finite number, found inf");
+}
+
+#[test]
+fn bad_loads_are_refused_by_field_place_and_value() {
+    let scene = Scene::new(1.0, Beam { bending: 1.0, axial: 1.0, piezo: (), permittivity: () });
+    refused(scene.load(plain(NAN)), &format!("load.transverse {AT} finite number, found NaN"));
+    refused(
+        scene.load(Load { transverse: (), axial: INF, points: () }),
+        &format!("load.axial {AT} finite number, found inf"),
+    );
+    let pole = Load { transverse: Function(|x: f64| 1.0 / (x - x)), axial: (), points: () };
+    refused(scene.load(pole), &format!("load.transverse {AT} finite number, found inf"));
+    let at = |x, force, moment| {
+        scene.load(Load { transverse: (), axial: (), points: [PointLoad { x, force, moment }] })
+    };
+    for (bad, found) in [(0.0, "0"), (1.0, "1"), (-0.1, "-0.1"), (NAN, "NaN")] {
+        let said = "load.points[0]: expected positions in ascending order strictly inside (0, length), found";
+        refused(at(bad, 1.0, 0.0), &format!("{said} {found}"));
+    }
+    refused(at(0.5, NAN, 0.0), "load.points[0]: expected finite numbers, found NaN");
+    refused(at(0.5, 0.0, INF), "load.points[0]: expected finite numbers, found inf");
+}
+
+#[test]
+fn parts_that_need_others_say_which() {
+    let bending = Scene::new(1.0, Beam::elastic(1.0));
+    let said = "beam.axial: expected because of load.axial, found nothing";
+    refused(bending.load(Load { transverse: (), axial: 1.0, points: () }), said);
+    let said = "beam.permittivity: expected because of conduction, found nothing";
+    refused(bending.conduction(Conduction::new(1.0, (), 1.0)), said);
+    refused(bending.conduction(Conduction::new((), 1.0, 1.0)), said);
+    let beam = Beam { bending: 1.0, axial: 1.0, piezo: 1.0, permittivity: () };
+    refused(Scene::new(1.0, beam), "beam.permittivity: expected because of beam.piezo, found nothing");
+    let beam = Beam { bending: 1.0, axial: (), piezo: 1.0, permittivity: 1.0 };
+    refused(Scene::new(1.0, beam), "beam.axial: expected because of beam.piezo, found nothing");
+}
+
+#[test]
+fn bad_meshes_are_refused_by_field_place_and_value() {
+    fn said(mesh: Mesh<'_, f64>) -> String {
+        refusal(Scene::new(1.0, Beam::elastic(1.0)), mesh)
+    }
+    assert_eq!(said(Mesh::uniform(0)), "mesh.elements: expected 1 to 100 000 000 elements, found 0");
+    let graded = |elements, ratio| said(Mesh::Graded { elements, ratio });
+    assert_eq!(graded(0, 1.0), "mesh.elements: expected 1 to 100 000 000 elements, found 0");
+    for (bad, found) in [(0.0, "0"), (-1.0, "-1"), (NAN, "NaN"), (INF, "inf")] {
+        assert_eq!(graded(4, bad), format!("mesh.ratio: expected a finite number > 0, found {found}"));
+    }
+    let nodes = |nodes: &[f64]| said(Mesh::Nodes(nodes));
+    assert_eq!(nodes(&[]), "mesh.nodes: two nodes at least: expected 2, found 0");
+    assert_eq!(nodes(&[0.0]), "mesh.nodes: two nodes at least: expected 2, found 1");
+    assert_eq!(nodes(&[0.1, 1.0]), "mesh.nodes[0]: expected a first node at 0, found 0.1");
+    assert_eq!(nodes(&[0.0, 0.9]), "mesh.nodes[1]: expected a last node at the beam's length, found 0.9");
+    for (middle, found) in [([0.5, 0.5], "0.5"), ([0.6, 0.4], "0.4"), ([0.5, NAN], "NaN")] {
+        let said = nodes(&[0.0, middle[0], middle[1], 1.0]);
+        assert_eq!(said, format!("mesh.nodes[2]: expected nodes that increase, found {found}"));
+    }
+}
+
+#[test]
+fn a_workspace_too_small_says_how_much_it_takes() {
+    let steps = Steps { breaks: &[0.25, 0.5], values: &[1.0, 2.0, 3.0] };
+    let problem = Problem::new(Scene::new(1.0, Beam::elastic(steps)), Mesh::uniform(2)).expect("a scene");
+    let mut memory = problem.workspace::<2>();
+    let error = problem.solve(&mut memory, &Settings::default()).err().expect("too little memory");
+    let said = "workspace: expected room for 3 elements or more (breaks and point loads add nodes), found 2";
+    assert_eq!(error.to_string(), said);
+}
