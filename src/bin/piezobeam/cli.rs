@@ -45,7 +45,7 @@ pub enum Command {
     /// Solve a scene and report its fields, contact zones and reactions
     #[command(after_help = SOLVE)]
     Solve(SolveArgs),
-    /// Read a scene, say what it contains and whether its solution is known to be unique; solve nothing
+    /// Read a scene, say what it contains, whether its solution is known to be unique, and what to beware of
     #[command(after_help = "Example:\n  piezobeam check beam.toml")]
     Check(CheckArgs),
     /// Recompute the examples of the paper and draw its figures as SVG files
