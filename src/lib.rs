@@ -118,7 +118,9 @@ pub use law::{Compliance, Law, Linear, Power, Tabulated, truncate, truncate_posi
 pub use mesh::Mesh;
 pub use newton::{Report, Settings, Status};
 pub use problem::{Prepared, Problem};
-pub use profile::{Curve, Flat, Function, Piece, Pieces, Polynomial, Profile, Slot, Smooth, Steps, Table};
+pub use profile::{
+    Curve, Flat, Function, Kept, Piece, Pieces, Polynomial, Profile, Room, Slot, Smooth, Steps, Table,
+};
 pub use real::{Pair, Quad, Real, Square};
 pub use scene::{
     Beam, BeamPart, Conduction, ConductionPart, Foundation, FoundationPart, Load, LoadPart, Model, PointLoad,

@@ -162,9 +162,46 @@ pub trait Slot<T>: Copy + Default + core::fmt::Debug {
     fn of(x: T) -> Self;
     /// The number kept, or zero.
     fn get(self) -> T;
+    /// Room for an X that is of use only where the profile is there.
+    type Room<X: Copy + Default>: Room<X>;
+}
+
+/// Room for an X, or none.
+pub trait Room<X>: Copy + Default {
+    /// The X kept, if there is room.
+    fn look(&self) -> Option<&X>;
+    /// The X kept, if there is room.
+    fn open(&mut self) -> Option<&mut X>;
+}
+
+impl<X> Room<X> for () {
+    #[inline(always)]
+    fn look(&self) -> Option<&X> {
+        None
+    }
+    #[inline(always)]
+    fn open(&mut self) -> Option<&mut X> {
+        None
+    }
+}
+
+/// Room that is there.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Kept<X>(X);
+
+impl<X: Copy + Default> Room<X> for Kept<X> {
+    #[inline(always)]
+    fn look(&self) -> Option<&X> {
+        Some(&self.0)
+    }
+    #[inline(always)]
+    fn open(&mut self) -> Option<&mut X> {
+        Some(&mut self.0)
+    }
 }
 
 impl<T: Real> Slot<T> for () {
+    type Room<X: Copy + Default> = ();
     #[inline(always)]
     fn of(_: T) -> Self {}
     #[inline(always)]
@@ -174,6 +211,7 @@ impl<T: Real> Slot<T> for () {
 }
 
 impl<T: Real> Slot<T> for Flat<T> {
+    type Room<X: Copy + Default> = Kept<X>;
     #[inline(always)]
     fn of(x: T) -> Self {
         Self(x)

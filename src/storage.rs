@@ -6,10 +6,11 @@
 
 use crate::electric::Ratio;
 use crate::element::Element;
-use crate::profile::{Profile, Slot};
+use crate::profile::{Profile, Room, Slot};
 use crate::real::{Pair, Real};
 use crate::scene::Model;
 use crate::sweep::pair::Bending;
+use crate::sweep::quad::Coupled;
 use crate::sweep::{Condensed, Factor};
 
 use crate::element::contact::Touch;
@@ -51,12 +52,33 @@ impl<T: Real> State<T> {
         if step { Self { e: self.e + e, d: self.d + d } } else { Self { e, d } }
     }
 
+    /// The state a share t of the step `step` away.
+    #[inline(always)]
+    pub(crate) fn plus(self, step: Self, t: T) -> Self {
+        Self { e: self.e + step.e * t, d: self.d + step.d * t }
+    }
+
     /// The state at the share t of the way to `other`.
     #[inline(always)]
     pub(crate) fn toward(self, other: Self, t: T) -> Self {
         Self { e: self.e + (other.e - self.e) * t, d: self.d + (other.d - self.d) * t }
     }
 }
+
+/// What the monolithic sweep keeps of an element (see [`crate::newton`]).
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Link<T: Real> {
+    /// What is missing of equilibrium: differences of force and moment at the left end.
+    pub(crate) load: T::Vec2,
+    /// The Newton step.
+    pub(crate) step: State<T>,
+    pub(crate) factor: Factor<T, Coupled>,
+}
+
+type RoomOf<T, P, X> = <<P as Profile<T>>::Slot as Slot<T>>::Room<X>;
+
+/// Where the potential acts on bending, and only there, a [`Link`].
+type Linked<T, M> = RoomOf<T, <M as Model<T>>::Mu1, Link<T>>;
 
 /// What the sweeps keep of an element and its right node.
 pub(crate) struct Work<T: Real, M: Model<T>> {
@@ -67,6 +89,33 @@ pub(crate) struct Work<T: Real, M: Model<T>> {
     pub(crate) states: [State<T>; 2],
     pub(crate) touch: Touch,
     pub(crate) node: Node<T, M>,
+    linked: Linked<T, M>,
+}
+
+impl<T: Real, M: Model<T>> Work<T, M> {
+    /// What is missing of equilibrium is kept in the spare state, or beside it where there is room.
+    #[inline(always)]
+    pub(crate) fn load(&self, spare: usize) -> T::Vec2 {
+        self.link().map_or(self.states[spare].e, |link| link.load)
+    }
+
+    #[inline(always)]
+    pub(crate) fn set_load(&mut self, spare: usize, load: T::Vec2) {
+        match self.link_mut() {
+            Some(link) => link.load = load,
+            None => self.states[spare].e = load,
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn link(&self) -> Option<&Link<T>> {
+        self.linked.look()
+    }
+
+    #[inline(always)]
+    pub(crate) fn link_mut(&mut self) -> Option<&mut Link<T>> {
+        self.linked.open()
+    }
 }
 
 impl<T: Real, M: Model<T>> Clone for Work<T, M> {
@@ -84,6 +133,7 @@ impl<T: Real, M: Model<T>> Default for Work<T, M> {
             states: [State::default(); 2],
             touch: Touch::Free,
             node: Node::default(),
+            linked: Linked::<T, M>::default(),
         }
     }
 }

@@ -58,14 +58,6 @@ fn a_halted_solve_knows_the_residual_of_what_it_returns() {
 }
 
 #[test]
-fn more_than_two_way_conduction_allows_is_stagnation() {
-    let report = ends(&named("stubborn").scene, Mesh::uniform(200), Settings::default());
-    assert!(matches!(report.status, Status::Converged | Status::Stagnation), "{report:?}");
-    assert_eq!(Status::Stagnation.name(), "stagnation");
-    assert!(Status::Stagnation.to_string().starts_with("iterations stopped reducing the residual"));
-}
-
-#[test]
 fn a_law_that_is_not_finite_once_is_named_with_its_element() {
     for nth in [1, 2, 10, 100, 1000] {
         let calls = Cell::new(0);

@@ -78,6 +78,15 @@ pub(crate) enum Fault {
     NotMonotone,
 }
 
+/// What of the contact's stiffness makes the tangent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Tangent {
+    /// All of it: the derivative.
+    Whole,
+    /// What resists: not that of a conduction force which pulls, mu1 R(q) < 0.
+    Nondecreasing,
+}
+
 /// The contact force of an element, linearised at its state: tangent . motion - offset.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Contact<T> {
@@ -89,7 +98,7 @@ pub(crate) struct Contact<T> {
 }
 
 /// At most three crossings each of eta = 0, eta = M, q = M, q = -M, and the two ends.
-type Splits<T> = ArrayVec<T, 14>;
+pub(crate) type Splits<T> = ArrayVec<T, 14>;
 
 impl<T: Real> Contact<T> {
     const FREE: fn() -> Self =
@@ -129,11 +138,21 @@ impl<T: Real> Contact<T> {
             Touch::High => Ok(Self::full(touch, stiffness + drive())),
             Touch::Low => Ok(Self::full(touch, stiffness - drive())),
             Touch::Mixed => {
-                let conducts = element.conducts();
-                let q = if conducts { q() } else { Cubic::default() };
-                Self::split(model, element, &eta, &q, scale, conducts)
+                let q = if element.conducts() { q() } else { Cubic::default() };
+                Self::split(model, element, &eta, &q, scale, Tangent::Whole)
             }
         }
+    }
+
+    /// As [`Contact::at`], with [`Tangent::Nondecreasing`].
+    pub(crate) fn nondecreasing<M: Model<T>>(
+        model: &M,
+        element: &Element<T, M>,
+        motion: &Motion<T>,
+        q: &Cubic<T>,
+        scale: T,
+    ) -> Result<Self, Fault> {
+        Self::split(model, element, &motion.cubic(), q, scale, Tangent::Nondecreasing)
     }
 
     #[inline(never)]
@@ -143,9 +162,10 @@ impl<T: Real> Contact<T> {
         eta: &Cubic<T>,
         q: &Cubic<T>,
         scale: T,
-        conducts: bool,
+        of: Tangent,
     ) -> Result<Self, Fault> {
         let law = model.foundation().law;
+        let conducts = element.conducts();
         let bounds = model.conduction();
         let (most, most_q) = (bounds.truncation, bounds.potential_truncation);
         let mut splits = Splits::new();
@@ -179,7 +199,9 @@ impl<T: Real> Contact<T> {
                     let drive = element.mu1.at(t) * truncate(q.at(t), most_q).0;
                     let (value, slope) = truncate_positive(r, most);
                     force = force + drive * value;
-                    tangent = tangent + drive * slope;
+                    if of == Tangent::Whole || drive > T::zero() {
+                        tangent = tangent + drive * slope;
+                    }
                 }
                 contact.add(t, T::of(weight) * length, tangent, tangent * r - force);
             }
@@ -538,7 +560,7 @@ mod tests {
                 let q = Cubic([level * (height + 1e-9), level * 0.3, level * 0.2, level * 0.1]);
                 let closed = Contact::at(&model, &element, &motion, || q, 1.0).unwrap();
                 prop_assert_eq!(closed.touch, touch);
-                let split = Contact::split(&model, &element, &eta, &q, 1.0, true).unwrap();
+                let split = Contact::split(&model, &element, &eta, &q, 1.0, Tangent::Whole).unwrap();
                 for (closed, split) in closed.stiffness.iter().zip(split.stiffness) {
                     prop_assert!((closed - split).abs() < 1e-13 * (7.0 + 4.0));
                 }
@@ -551,7 +573,7 @@ mod tests {
             let element = self::element(&plain, h);
             let closed = Contact::at(&plain, &element, &motion, Cubic::default, 0.25).unwrap();
             prop_assert_eq!(closed.touch, Touch::Full);
-            let split = Contact::split(&plain, &element, &eta, &Cubic::default(), 0.25, false).unwrap();
+            let split = Contact::split(&plain, &element, &eta, &Cubic::default(), 0.25, Tangent::Whole).unwrap();
             for (closed, split) in closed.stiffness.iter().zip(split.stiffness) {
                 prop_assert!((closed - split).abs() < 1e-13 * 7.0);
             }

@@ -33,9 +33,9 @@ type Where<T, P, M> = <PieceOf<T, P> as Piece<T>>::Gate<Joint<T, M>>;
 
 /// K^-1 on an element. What the scene lacks takes no room.
 pub(crate) struct Flexibility<T: Real, M: Model<T>> {
-    uu: Where<T, M::Axial, M>,
-    uq: Where<T, M::Piezo, M>,
-    qq: Where<T, M::Permittivity, M>,
+    pub(crate) uu: Where<T, M::Axial, M>,
+    pub(crate) uq: Where<T, M::Piezo, M>,
+    pub(crate) qq: Where<T, M::Permittivity, M>,
 }
 
 impl<T: Real, M: Model<T>> Clone for Flexibility<T, M> {

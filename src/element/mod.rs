@@ -5,6 +5,7 @@
 //! matrices are formed when the sweep passes.
 
 pub(crate) mod contact;
+pub(crate) mod coupled;
 pub(crate) mod hermite;
 pub(crate) mod linear;
 

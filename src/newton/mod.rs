@@ -31,6 +31,7 @@
 //! *Descent.* Without the potential's action on bending the state is the minimum of a convex energy. A full step
 //! that made the residual grow is cut to where the energy is least along it ([`Level::shorten`]).
 
+mod coupled;
 pub(crate) mod nested;
 mod settings;
 
@@ -207,7 +208,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
 
     /// Is bending in a loop with the potential?
     fn two_way(&self) -> bool {
-        self.context.onto.is_some() && self.context.into
+        self.context.onto.is_some() && self.context.into && M::Permittivity::PRESENT
     }
 
     /// u, q and the fluxes from the current penetration, to all digits.
@@ -243,7 +244,11 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         count: &mut Count,
     ) -> Result<Outcome, Halt> {
         self.best = None;
-        let outcome = self.descend(changed, scale, stop, most, count);
+        let mut outcome = self.descend(changed, scale, stop, most, count);
+        if outcome == Ok(Outcome::Stalled) && self.is_tied() {
+            self.keep_best();
+            outcome = self.descend_coupled(scale, stop, most, count);
+        }
         if outcome != Ok(Outcome::Converged) {
             self.keep_best();
         }
@@ -277,6 +282,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         }
         let mut least = T::infinity();
         let mut rounds_since_best = 0;
+        let (mut slow, mut last) = (0, T::infinity());
         // What rounding may leave of a sweep's residual: 1/h times that of e is in the forces.
         let blur = T::of(64.0) * T::epsilon() * T::from(self.places.len()).unwrap_or(T::one());
         for _ in 0..=most {
@@ -286,7 +292,8 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 count.spend(swept.len())?;
                 residual = self.condense(swept, scale, Solve::State)?;
             }
-            if residual.relative() <= stop.max(blur) {
+            let swept = residual.relative();
+            if swept <= stop.max(blur) || (swept <= T::of(NEAR) && swept > T::of(0.5) * last) {
                 // Nothing changed, or as little as a sweep can tell: ask statics, on all elements.
                 residual = self.check(scale, count)?;
                 // As long as it helps: the sweeps are less exact than the increments that they give.
@@ -307,8 +314,8 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                     self.condense(0..self.places.len(), scale, Solve::State)?;
                 }
             }
-            let last = self.best.map(|(_, best)| best.relative());
-            if self.convex() && last.is_some_and(|last| residual.relative() > last) {
+            let before = self.best.map(|(_, best)| best.relative());
+            if self.convex() && before.is_some_and(|last| residual.relative() > last) {
                 // A full step that made things worse: go only as far as the energy falls.
                 if self.shorten(scale, count)? {
                     count.spend(self.places.len())?;
@@ -332,6 +339,11 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 return Ok(Outcome::Floor);
             }
             if rounds_since_best > PATIENCE {
+                return Ok(Outcome::Stalled);
+            }
+            slow += usize::from(relative > T::of(0.1) * last);
+            last = relative;
+            if slow > SLOW && self.is_tied() {
                 return Ok(Outcome::Stalled);
             }
             changed = self.substitute(false).ok_or(Halt::Breakdown(self.meeting - 1))?;
@@ -421,7 +433,23 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     /// on any admissible increment, the difference of an element's moments from them is all its load.
     fn polish(&mut self, scale: T, count: &mut Count) -> Result<Residual<T>, Halt> {
         self.keep_best();
-        let (current, all) = (self.current, 0..self.places.len());
+        let all = 0..self.places.len();
+        let open = self.join_nodes();
+        if self.two_way() {
+            self.electric();
+        }
+        self.balance(scale, true)?;
+        count.spend(2 * all.len())?;
+        self.condense(all, scale, Solve::Increment { open })?;
+        self.substitute(true).ok_or(Halt::Breakdown(self.meeting - 1))?;
+        count.iterations += 1;
+        self.check(scale, count)
+    }
+
+    /// Sums d anew from the relative unknowns, from the right end, without rounding; by how much the left end
+    /// has to move.
+    fn join_nodes(&mut self) -> T::Vec2 {
+        let current = self.current;
         let right = self.context.right.value;
         let (mut w, mut theta) = (Sum::<T>::from(right.x()), Sum::<T>::from(right.y()));
         for Place { element, work } in self.places.iter_mut().rev() {
@@ -437,16 +465,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         let left = self.context.left.value;
         w.add(-left.x());
         theta.add(-left.y());
-        let open = -T::Vec2::of(w.value(), theta.value());
-        if self.two_way() {
-            self.electric();
-        }
-        self.balance(scale, true)?;
-        count.spend(2 * all.len())?;
-        self.condense(all, scale, Solve::Increment { open })?;
-        self.substitute(true).ok_or(Halt::Breakdown(self.meeting - 1))?;
-        count.iterations += 1;
-        self.check(scale, count)
+        -T::Vec2::of(w.value(), theta.value())
     }
 
     /// Takes the rounding of the sweeps out of a converged state, where there is any to speak of; keeps
@@ -544,7 +563,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 residual.load = residual.load + cd.x().abs() + element.fr.x().abs();
                 let mut stamp = contact.stamp(element);
                 if step {
-                    (stamp.fe, stamp.fr) = (-work.states[spare].e, T::Vec2::default());
+                    (stamp.fe, stamp.fr) = (-work.load(spare), T::Vec2::default());
                 } else if M::Gap::PRESENT {
                     west = west.shift(element.gap.kink::<T>());
                 }
@@ -584,7 +603,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 residual.load = residual.load + cd.x().abs() + element.fr.x().abs();
                 let mut stamp = contact.stamp(element);
                 if step {
-                    (stamp.fe, stamp.fr) = (-work.states[spare].e, T::Vec2::default());
+                    (stamp.fe, stamp.fr) = (-work.load(spare), T::Vec2::default());
                 }
                 let stamp = stamp.mirrored(h);
                 let absorbed =
@@ -656,7 +675,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             moment.add(carried.y());
             force.add(carried.x());
             if store {
-                work.states[spare].e = gap;
+                work.set_load(spare, gap);
             }
             node = work.node;
         }
@@ -783,6 +802,13 @@ fn beyond<T: Real>(gap: T::Vec2, rounding: T::Vec2, held: T::Vec2, h: T) -> T::V
 
 /// Increments taken one after the other, each from sweeps of its own.
 const POLISHINGS: usize = 6;
+
+/// Residual of a sweep that may be all rounding: if the next one is not better, statics is asked.
+const NEAR: f64 = 1e-7;
+
+/// Rounds that may fall short of a tenth of the residual before where the potential acts on bending, until the
+/// monolithic method takes over.
+const SLOW: usize = 4;
 
 /// Rounds without halving the residual after which an iteration counts as stalled.
 const PATIENCE: usize = 40;

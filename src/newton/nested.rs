@@ -91,7 +91,7 @@ fn prolong<T: Real, M: Model<T>>(fine: &mut [Place<T, M>], coarse: &[Place<T, M>
 }
 
 /// The ends of the beam as the penetration sees them: xi = xi' = 0, so eta = -s.
-fn clamp<T: Real, M: Model<T>>(model: &M, x: T, mid: T) -> End<T, crate::sweep::pair::Bending> {
+pub(super) fn clamp<T: Real, M: Model<T>>(model: &M, x: T, mid: T) -> End<T, crate::sweep::pair::Bending> {
     let [s, slope, _] = model.foundation().gap.jet(x, mid);
     End { held: [true, true], value: -T::Vec2::of(s, slope), condensed: Condensed::default() }
 }
@@ -152,7 +152,7 @@ pub(crate) fn solve<T: Real, M: Model<T>>(
         let mut outcome = Ok(Outcome::Stalled);
         if halted.is_none() {
             outcome = if coarsest {
-                level.cold(stop, rank == 0, &mut count)
+                level.begin(stop, rank == 0, &mut count)
             } else {
                 level.iterate(T::one(), stop, STAGE, &mut count)
             };
@@ -161,7 +161,7 @@ pub(crate) fn solve<T: Real, M: Model<T>>(
                 for place in level.places.iter_mut() {
                     place.work.states = [State::default(); 2];
                 }
-                outcome = level.cold(stop, true, &mut count);
+                outcome = level.begin(stop, true, &mut count);
             }
             if rank == 0 && outcome == Ok(Outcome::Converged) {
                 outcome = level.refine(&mut count).map(|()| Outcome::Converged);
@@ -206,7 +206,28 @@ pub(crate) fn solve<T: Real, M: Model<T>>(
 }
 
 impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
-    /// From nothing: the free beam, then a continuation in the stiffness as far as it is needed.
+    /// From nothing.
+    fn begin(&mut self, stop: T, finest: bool, count: &mut Count) -> Result<Outcome, Halt> {
+        if self.context.onto.is_none() {
+            return self.cold(stop, finest, count);
+        }
+        // Without the potential's action the state is the least of a convex energy: the start for the rest.
+        let Context { model, left, right, into, .. } = *self.context;
+        let alone = Context { model, left, right, onto: None, into };
+        let mut level = Level::new(&alone, self.places);
+        level.current = self.current;
+        level.cold(T::of(ROUGH), false, count)?;
+        self.current = level.current;
+        let most = if finest { 4 * STAGE } else { STAGE };
+        let outcome = self.iterate(T::one(), stop, most, count)?;
+        if finest && outcome == Outcome::Stalled {
+            // Nothing cheaper is left.
+            return self.descend_coupled(T::one(), stop, most, count);
+        }
+        Ok(outcome)
+    }
+
+    /// From nothing, for bending alone: the free beam, then a continuation in the stiffness as far as it is needed.
     fn cold(&mut self, stop: T, finest: bool, count: &mut Count) -> Result<Outcome, Halt> {
         let rough = T::of(ROUGH);
         let changed = self.free(count)?;

@@ -1,14 +1,13 @@
 //! The general 4x4 block of the coupled system: unknowns (w, theta, u, q); u and q are carried unchanged.
 //!
 //! The tangent of the coupled problem is not symmetric, so pivots are divided by Gaussian elimination with
-//! row exchanges after an equilibration by powers of two, which extreme units call for.
+//! row exchanges after an equilibration of rows and columns, which extreme units call for.
 
 use super::{Block, Stamp};
 use crate::real::{Quad, Real, Square};
 
 /// The block of the coupled system.
 #[derive(Clone, Copy, Debug)]
-#[cfg_attr(not(test), allow(dead_code, reason = "the coupled Newton method builds on it"))]
 pub(crate) struct Coupled;
 
 type Rows<T> = [[T; 4]; 4];
@@ -36,15 +35,23 @@ fn eliminate<T: Real>(a: &T::Mat4, b: &T::Mat4, v: T::Vec4, held: [bool; 4]) -> 
             v[i] = T::zero();
         }
     }
+    // Rows and columns are scaled by the roots of the diagonal, so that pivots of different units compare.
+    let mut unit = [T::one(); 4];
     for i in 0..4 {
-        // Rows are scaled to size one, so that pivots of different units compare.
         let size = a[i].iter().fold(T::zero(), |m, x| m.max(x.abs()));
         if !(size > T::zero() && size.is_finite()) {
             return None;
         }
-        a[i] = a[i].map(|x| x / size);
-        b[i] = b[i].map(|x| x / size);
-        v[i] = v[i] / size;
+        if a[i][i] != T::zero() {
+            unit[i] = T::one() / a[i][i].abs().sqrt();
+        }
+    }
+    for i in 0..4 {
+        for j in 0..4 {
+            a[i][j] = unit[i] * a[i][j] * unit[j];
+        }
+        b[i] = b[i].map(|x| unit[i] * x);
+        v[i] = unit[i] * v[i];
     }
     for i in 0..4 {
         let mut best = i;
@@ -81,6 +88,10 @@ fn eliminate<T: Real>(a: &T::Mat4, b: &T::Mat4, v: T::Vec4, held: [bool; 4]) -> 
         }
         b[i] = b[i].map(|x| x / a[i][i]);
         v[i] = v[i] / a[i][i];
+    }
+    for i in 0..4 {
+        b[i] = b[i].map(|x| unit[i] * x);
+        v[i] = unit[i] * v[i];
     }
     let finite = v.iter().chain(b.iter().flatten()).all(|x| x.is_finite());
     finite.then(|| (matrix::<T>(b), T::Vec4::of(v)))

@@ -30,9 +30,12 @@ pub const EDGE_RIGID: f64 = 1e-5;
 pub const CLAMP: f64 = 1e-9;
 /// What is left of the sum of all transverse forces over the sum of their sizes, up to N = 1000: rounding of
 /// the end forces, which know the element's 1/h.
-pub const EQUILIBRIUM: f64 = 1e-11;
+pub const EQUILIBRIUM: f64 = 5e-11;
 /// Element visits of a solve: so many per element and so many beside, whatever the stiffness.
 pub const VISITS: (usize, usize) = (8, 2000);
+
+/// The same with conduction that acts on bending, up to a hundred times past the uniqueness condition.
+pub const COUPLED_VISITS: (usize, usize) = (20, 8000);
 
 /// Nodal error over the maximum for the free beam at any N up to a million: a few roundings per node carried
 /// along, of which the relative unknowns keep the sum bounded.

@@ -1,0 +1,140 @@
+//! Conduction in both directions, far beyond the uniqueness condition.
+#![allow(clippy::expect_used, reason = "a test that cannot go on fails")]
+
+mod common;
+
+use common::{fields, named, points, relative, solved, tolerances as tol};
+use piezobeam::{
+    Beam, Conduction, Foundation, Linear, Load, Mesh, Polynomial, Potential, Scene, Status, Steps,
+};
+use proptest::prelude::*;
+
+/// A scene with everything, by its numbers.
+#[derive(Clone, Debug)]
+struct Numbers {
+    elements: usize,
+    beam: Beam<f64, f64, f64, f64>,
+    mu: [f64; 2],
+    truncation: f64,
+    potential_truncation: f64,
+    stiffness: f64,
+    /// Height of the gap's bump.
+    gap: f64,
+    /// Where the load steps, and its values.
+    step: [f64; 1],
+    load: [f64; 2],
+    ends: [f64; 2],
+}
+
+prop_compose! {
+    /// 10^x, x between the bounds.
+    fn powers(low: f64, high: f64)(x in low..high) -> f64 {
+        10f64.powf(x)
+    }
+}
+
+prop_compose! {
+    fn signed(low: f64, high: f64)(size in powers(low, high), up in any::<bool>()) -> f64 {
+        if up { size } else { -size }
+    }
+}
+
+prop_compose! {
+    /// A beam and how far past the condition (2.15) it is: `past` times.
+    fn numbers()(
+        elements in powers(0.903, 3.3),
+        bending in powers(-3.0, 5.0),
+        axial in powers(0.0, 8.0),
+        permittivity in powers(-6.0, 2.0),
+        piezo in prop_oneof![Just(0.0), signed(-2.0, 2.0)],
+        truncation in powers(-2.0, 0.0),
+        larger in prop_oneof![Just(1.0), powers(0.0, 4.0)],
+        past in powers(-0.5, 2.0),
+        ratio in powers(-2.0, 2.0),
+        stiffness in prop_oneof![Just(0.0), powers(-2.0, 12.0)],
+        gap in prop_oneof![Just(0.0), signed(-3.0, 0.0)],
+        step in prop::array::uniform1(0.02..0.98_f64),
+        size in powers(-2.0, 1.5),
+        load in prop::array::uniform2(signed(-1.0, 0.0)),
+        ends in prop::array::uniform2(signed(-1.0, 1.5)),
+    ) -> Numbers {
+        let potential_truncation = truncation * larger;
+        let (c1, c2) = (1.0 / core::f64::consts::PI, (1.0 / 4.730_040_744_862_704_f64).powi(2));
+        let by_bending = bending / c2 / c2 / (potential_truncation + 0.5 * truncation + ratio * truncation);
+        let by_permittivity = permittivity / c1 / c1 / (0.5 * truncation + ratio * truncation);
+        let mu1 = past * by_bending.min(by_permittivity);
+        Numbers {
+            elements: elements as usize,
+            beam: Beam { bending, axial, piezo: piezo * (axial * permittivity).sqrt(), permittivity },
+            mu: [mu1, ratio * mu1],
+            truncation,
+            potential_truncation,
+            stiffness: stiffness * bending,
+            gap: gap * truncation,
+            step,
+            load: load.map(|f| 384.0 * bending * truncation * size * f),
+            ends: ends.map(|q| q * potential_truncation),
+        }
+    }
+}
+
+/// Status and visits per element of a scene, whose fields have to be numbers and whose foundation may not pull.
+fn outcome(n: &Numbers, mu2: f64) -> Result<(Status, f64), TestCaseError> {
+    let gap = [0.0, 0.0, 16.0 * n.gap, -32.0 * n.gap, 16.0 * n.gap];
+    let scene = Scene::new(1.0, n.beam)
+        .foundation(Foundation { law: Linear(n.stiffness), gap: Polynomial(&gap) })
+        .conduction(Conduction {
+            mu1: n.mu[0],
+            mu2,
+            truncation: n.truncation,
+            potential_truncation: n.potential_truncation,
+        })
+        .load(Load { transverse: Steps { breaks: &n.step, values: &n.load }, axial: (), points: () })
+        .potential(Potential { left: n.ends[0], right: n.ends[1] });
+    solved(scene, Mesh::uniform(n.elements), |s| {
+        for x in points(20, 1.0) {
+            let f = s.at(x);
+            prop_assert!((f.bending + f.moment + f.shear).is_finite());
+            prop_assert!((f.potential.unwrap_or(f64::NAN) + f.stretching.unwrap_or(f64::NAN)).is_finite());
+            prop_assert!(f.pressure.unwrap_or(f64::NAN) >= 0.0);
+        }
+        let report = s.report();
+        if report.status == Status::Converged {
+            prop_assert!(report.residual <= 1e-10);
+            prop_assert!(s.resultants().equilibrium_error <= tol::RANDOM_EQUILIBRIUM);
+        }
+        let (per_element, beside) = tol::COUPLED_VISITS;
+        prop_assert!(report.element_visits <= per_element * report.elements + beside, "{report:?}");
+        Ok((report.status, report.element_visits as f64 / report.elements as f64))
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 500, ..ProptestConfig::default() })]
+
+    #[test]
+    fn two_way_conduction_far_past_uniqueness_converges(n in numbers()) {
+        prop_assert_eq!(outcome(&n, n.mu[1])?.0, Status::Converged);
+    }
+
+    #[test]
+    fn a_foundation_that_attracts_by_a_frozen_potential_converges(n in numbers()) {
+        prop_assert_eq!(outcome(&n, 0.0)?.0, Status::Converged);
+    }
+}
+
+#[test]
+fn scenes_on_which_the_fixed_point_fails_are_of_order_four() {
+    for name in ["stubborn", "beyond"] {
+        let case = named(name);
+        let errors = [8, 32, 128].map(|n| {
+            let (report, at) = fields(&case.scene, Mesh::uniform(n), &case.column("x"));
+            assert_eq!(report.status, Status::Converged, "{name} {n}: {report:?}");
+            let bending: Vec<f64> = at.iter().map(|f| f.bending).collect();
+            relative(&bending, &case.column("xi"))
+        });
+        for pair in errors.windows(2) {
+            assert!((pair[0] / pair[1]).log2() / 2.0 > tol::ORDER, "{name}: {errors:?}");
+        }
+    }
+}
