@@ -74,6 +74,16 @@ impl<T: Real> Mesh<'_, T> {
         }
     }
 
+    /// Number of elements, those between breaks included.
+    pub(crate) fn count<M: Model<T>>(&self, model: &M) -> Result<usize, Error> {
+        let mut elements = 0;
+        self.lay(model, |_, _, _| {
+            elements += 1;
+            Ok(())
+        })?;
+        Ok(elements)
+    }
+
     /// Calls `push(left, right, stop)` for each element from left to right; `stop` says that a break or a
     /// concentrated load stands at `right`, over which no coarser element may reach.
     pub(crate) fn lay<M: Model<T>>(

@@ -69,11 +69,7 @@ impl<'a, T: Real, M: Model<T>> Problem<'a, T, M> {
         memory: &'s mut S,
     ) -> Result<Prepared<'s, T, M>, Error> {
         // Count first, so that memory that grows does so once.
-        let mut elements = 0;
-        self.mesh.lay(&self.scene, |_, _, _| {
-            elements += 1;
-            Ok(())
-        })?;
+        let elements = self.mesh.count(&self.scene)?;
         let places = memory.places(elements);
         if elements > places.len() {
             return Err(Error::Capacity { needed: elements, available: places.len() });

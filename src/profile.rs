@@ -15,7 +15,7 @@ use crate::quadrature::gauss;
 use crate::real::Real;
 
 /// A profile on one element, as a function of t: 0 at the right node, 1 at the left one.
-pub trait Piece<T>: Copy + Default + core::fmt::Debug {
+pub trait Piece<T>: Copy + Default + PartialEq + core::fmt::Debug {
     /// From the values at the four Gauss points, in ascending t.
     fn from_samples(samples: [T; 4]) -> Self;
     /// Value at t.
@@ -157,7 +157,7 @@ pub trait Profile<T: Real> {
 }
 
 /// Room for one number at each node, or none.
-pub trait Slot<T>: Copy + Default + core::fmt::Debug {
+pub trait Slot<T>: Copy + Default + PartialEq + core::fmt::Debug {
     /// Keeps x, if there is room.
     fn of(x: T) -> Self;
     /// The number kept, or zero.

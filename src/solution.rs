@@ -100,7 +100,7 @@ struct Solved<'s, T: Real, M: Model<T>> {
 
 impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
     pub(crate) fn new(scene: &'s M, places: &'s [Place<T, M>], answer: Answer<T, M>) -> Self {
-        let Answer { report, state, left } = answer;
+        let Answer { report, state, left, .. } = answer;
         Self { scene, places, report, state, left }
     }
 

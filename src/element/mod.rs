@@ -22,7 +22,7 @@ use linear::{AxialLoad, Flexibility};
 type SlotOf<T, P> = <P as Profile<T>>::Slot;
 
 /// What an element keeps of the gap: how far it is from rigid, as the relative unknowns measure it.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct GapBend<S> {
     /// s_left - T s_right, in value ...
     w: S,
@@ -158,6 +158,21 @@ impl<T: Real, M: Model<T>> Element<T, M> {
         // The gap's bend is added to e before anything is multiplied: their sum, xi's own, is what bends.
         let bend = if M::Gap::PRESENT { e + self.gap.bend::<T>() } else { e };
         self.bending.times(bend) - self.fe
+    }
+
+    /// Has `other` the same nodes?
+    pub(crate) fn covers(&self, other: &Self) -> bool {
+        self.right == other.right && self.h == other.h && self.stop == other.stop
+    }
+
+    /// Makes `other`, with the same nodes, the same equations of bending wherever the beam is?
+    pub(crate) fn bends_like(&self, other: &Self) -> bool {
+        self.bending == other.bending
+            && self.fe == other.fe
+            && self.fr == other.fr
+            && self.gap == other.gap
+            && self.law == other.law
+            && self.mu1 == other.mu1
     }
 
     /// x at t \[m\].

@@ -178,7 +178,9 @@ pub(crate) struct Level<'a, 'b, T: Real, M: Model<T>> {
     /// Which holds the best iterate; its residual.
     pub(crate) best: Option<(usize, Residual<T>)>,
     /// Elements before this one are condensed from the left, the others from the right.
-    meeting: usize,
+    pub(crate) meeting: usize,
+    /// The condensed parts are those of a state, not of an increment.
+    pub(crate) fresh: bool,
 }
 
 /// What a sweep solves for.
@@ -203,7 +205,7 @@ pub(crate) enum Outcome {
 impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     pub(crate) fn new(context: &'b Context<'a, T, M>, places: &'b mut [Place<T, M>]) -> Self {
         let meeting = (places.len() / 2).max(1);
-        Self { context, places, node: Node::default(), current: 0, best: None, meeting }
+        Self { context, places, node: Node::default(), current: 0, best: None, meeting, fresh: false }
     }
 
     /// Is bending in a loop with the potential?
@@ -244,6 +246,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         count: &mut Count,
     ) -> Result<Outcome, Halt> {
         self.best = None;
+        let changed = if self.fresh { changed } else { 0..self.places.len() };
         let mut outcome = self.descend(changed, scale, stop, most, count);
         if outcome == Ok(Outcome::Stalled) && self.is_tied() {
             self.keep_best();
@@ -620,6 +623,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             residual.see(gap, T::Vec2::default(), T::zero());
             residual.see_force(gap.x(), length);
         }
+        self.fresh = !step && (self.fresh || swept.len() == self.places.len());
         residual.load = residual.load * length;
         residual.size = residual.size.max(self.best.map_or(T::zero(), |(_, best)| best.size));
         if residual.is_finite() { Ok(residual) } else { Err(Halt::Breakdown(meeting - 1)) }
@@ -734,7 +738,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
 
     /// From the first to the last element whose matrix the current state changes, or whose part in the
     /// right-hand side.
-    fn changed(&self) -> Range<usize> {
+    pub(crate) fn changed(&self) -> Range<usize> {
         let mut changed = self.places.len()..0;
         if !M::Law::PRESENT && !M::Mu1::PRESENT {
             return 0..0;

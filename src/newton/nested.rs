@@ -17,6 +17,7 @@ use crate::storage::{Node, Place, State};
 use crate::sweep::{Condensed, End};
 use crate::{Error, electric};
 use arrayvec::ArrayVec;
+use core::ops::Range;
 
 /// Elements of a mesh that are merged into one of the next coarser mesh.
 const MERGED: usize = 4;
@@ -103,6 +104,66 @@ pub(crate) struct Answer<T: Real, M: Model<T>> {
     pub(crate) state: usize,
     /// Fields at the left end.
     pub(crate) left: Node<T, M>,
+    /// Where the condensed parts meet, if they are those of the state.
+    pub(crate) meeting: Option<usize>,
+}
+
+/// What the scene in `places` means for all meshes.
+fn context<'a, T: Real, M: Model<T>>(model: &'a M, places: &[Place<T, M>]) -> Context<'a, T, M> {
+    let length = model.length();
+    let half = T::of(0.5);
+    let (first, last) = match (places.first(), places.last()) {
+        (Some(first), Some(last)) => (first.element, last.element),
+        _ => (Element::blank(), Element::blank()),
+    };
+    Context {
+        model,
+        left: clamp(model, T::zero(), half * first.right),
+        right: clamp(model, length, length - half * last.h),
+        onto: electric::conducts_onto(places).then(|| electric::Ratio::of(&first)),
+        into: electric::conducts_into(places),
+    }
+}
+
+/// The work that `settings` allow on a mesh of so many elements.
+fn budget<T: Real>(settings: &Settings<T>, elements: usize) -> Count {
+    let most_visits = settings.max_visits.unwrap_or(400 * elements + 100_000);
+    Count { iterations: 0, visits: 0, most_visits }
+}
+
+impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
+    /// The answer on the finest mesh, where an iteration ended so.
+    fn answer(mut self, outcome: Result<Outcome, Halt>, count: &Count) -> Answer<T, M> {
+        if !self.two_way() && (self.context.into || self.context.onto.is_none()) {
+            self.electric();
+        }
+        if outcome.is_err() {
+            self.assess();
+        }
+        let status = match outcome {
+            Err(halt) => halt.into(),
+            Ok(Outcome::Converged) => Status::Converged,
+            Ok(Outcome::Floor) => Status::ToleranceBelowFloor,
+            Ok(Outcome::Stalled) => Status::Stagnation,
+        };
+        // Moments may balance where displacements or fluxes are beyond the number format.
+        let ratio = self.places.first().map(|place| electric::Ratio::of(&place.element));
+        let beyond = |p: &Place<T, M>| ratio.is_some_and(|ratio| !p.is_finite(self.current, &ratio));
+        let status = match self.places.iter().position(beyond) {
+            Some(element) if status == Status::Converged => Status::Breakdown { element },
+            _ => status,
+        };
+        let report = Report {
+            status,
+            residual: self.best.map_or(T::infinity(), |(_, r)| r.relative()),
+            floor: self.best.map_or(T::zero(), |(_, r)| r.floor()),
+            iterations: count.iterations,
+            element_visits: count.visits,
+            elements: self.places.len(),
+        };
+        let meeting = self.fresh.then_some(self.meeting);
+        Answer { report, state: self.current, left: self.node, meeting }
+    }
 }
 
 /// Solves the scene that was laid into `places`.
@@ -116,21 +177,11 @@ pub(crate) fn solve<T: Real, M: Model<T>>(
     let Some(&(_, elements)) = levels.first() else {
         return Err(Error::Capacity { needed: 1, available: 0 });
     };
-    let length = model.length();
-    let half = T::of(0.5);
-    let (first, last) = (places[0].element, places[elements - 1].element);
-    let context = Context {
-        model,
-        left: clamp(model, T::zero(), half * first.right),
-        right: clamp(model, length, length - half * last.h),
-        onto: electric::conducts_onto(&places[..elements]).then(|| electric::Ratio::of(&first)),
-        into: electric::conducts_into(&places[..elements]),
-    };
-    let most_visits = settings.max_visits.unwrap_or(400 * elements + 100_000);
-    let mut count = Count { iterations: 0, visits: 0, most_visits };
+    let context = context(model, &places[..elements]);
+    let mut count = budget(settings, elements);
 
-    let mut halted = None;
-    let mut finest = None;
+    let mut outcome = Ok(Outcome::Stalled);
+    let mut state = 0;
     for (rank, &(start, len)) in levels.iter().enumerate().rev() {
         let coarsest = rank + 1 == levels.len();
         let (head, tail) = places.split_at_mut(start + len);
@@ -141,16 +192,15 @@ pub(crate) fn solve<T: Real, M: Model<T>>(
             }
         } else {
             let (_, coarse_len) = levels[rank + 1];
-            let coarse = &tail[..coarse_len];
-            prolong(mesh, coarse, finest.map_or(0, |(current, _, _)| current));
+            prolong(mesh, &tail[..coarse_len], state);
         }
         let mut level = Level::new(&context, mesh);
         if context.onto.is_some() && !context.into {
             level.electric();
         }
-        let stop = if rank == 0 { settings.stop } else { T::of(ROUGH) };
-        let mut outcome = Ok(Outcome::Stalled);
-        if halted.is_none() {
+        // A halt on a coarser mesh is one on all: what it found is only carried on.
+        if outcome.is_ok() {
+            let stop = if rank == 0 { settings.stop } else { T::of(ROUGH) };
             outcome = if coarsest {
                 level.begin(stop, rank == 0, &mut count)
             } else {
@@ -166,43 +216,75 @@ pub(crate) fn solve<T: Real, M: Model<T>>(
             if rank == 0 && outcome == Ok(Outcome::Converged) {
                 outcome = level.refine(&mut count).map(|()| Outcome::Converged);
             }
-            if let Err(halt) = outcome {
-                halted = Some(halt);
-            }
         }
-        if rank == 0 && (context.into || context.onto.is_none()) && !level.two_way() {
-            level.electric();
+        if rank == 0 {
+            return Ok(level.answer(outcome, &count));
         }
-        if rank == 0 && halted.is_some() {
-            level.assess();
-        }
-        finest = Some((level.current, level.node, (level.best, outcome)));
+        state = level.current;
     }
-    let Some((current, node, (best, outcome))) = finest else {
-        return Err(Error::Capacity { needed: 1, available: 0 });
-    };
-    let status = match (halted, outcome) {
-        (Some(halt), _) => halt.into(),
-        (None, Err(halt)) => Halt::into(halt),
-        (None, Ok(Outcome::Converged)) => Status::Converged,
-        (None, Ok(Outcome::Floor)) => Status::ToleranceBelowFloor,
-        (None, Ok(Outcome::Stalled)) => Status::Stagnation,
-    };
-    // Moments may balance where displacements or fluxes are beyond the number format.
-    let ratio = electric::Ratio::of(&first);
-    let status = match places[..elements].iter().position(|p| !p.is_finite(current, &ratio)) {
-        Some(element) if status == Status::Converged => Status::Breakdown { element },
-        _ => status,
-    };
-    let report = Report {
-        status,
-        residual: best.map_or(T::infinity(), |(_, r)| r.relative()),
-        floor: best.map_or(T::zero(), |(_, r)| r.floor()),
-        iterations: count.iterations,
-        element_visits: count.visits,
-        elements,
-    };
-    Ok(Answer { report, state: current, left: node })
+    Err(Error::Capacity { needed: 1, available: 0 })
+}
+
+/// What is left of the last solve on a mesh.
+pub(crate) struct Last<T: Real, M: Model<T>> {
+    state: usize,
+    left: Node<T, M>,
+    meeting: Option<usize>,
+    /// Values at the clamps, and the truncations.
+    ends: [T::Vec2; 2],
+    bounds: [T; 2],
+}
+
+impl<T: Real, M: Model<T>> Last<T, M> {
+    pub(crate) fn of(answer: &Answer<T, M>, model: &M, places: &[Place<T, M>]) -> Self {
+        let Context { left, right, .. } = context(model, places);
+        Self {
+            state: answer.state,
+            left: answer.left,
+            meeting: answer.meeting,
+            ends: [left.value, right.value],
+            bounds: bounds(model),
+        }
+    }
+}
+
+fn bounds<T: Real, M: Model<T>>(model: &M) -> [T; 2] {
+    let conduction = model.conduction();
+    [conduction.truncation, conduction.potential_truncation]
+}
+
+/// Solves a scene from the last solution of another one on the same mesh, of which the elements `changed`
+/// differ. Only these, and those whose contact changes, are swept.
+pub(crate) fn follow<T: Real, M: Model<T>>(
+    model: &M,
+    places: &mut [Place<T, M>],
+    last: &Last<T, M>,
+    mut changed: Range<usize>,
+    settings: &Settings<T>,
+) -> Answer<T, M> {
+    let context = context(model, places);
+    let elements = places.len();
+    let mut count = budget(settings, elements);
+    let mut level = Level::new(&context, places);
+    (level.current, level.node) = (last.state, last.left);
+    if let Some(meeting) = last.meeting {
+        (level.meeting, level.fresh) = (meeting, true);
+    }
+    if context.onto.is_some() {
+        level.electric();
+    }
+    let ends = [context.left.value, context.right.value];
+    if ends != last.ends || bounds(model) != last.bounds {
+        changed = 0..elements;
+    } else {
+        let touched = level.changed();
+        if !touched.is_empty() {
+            changed = changed.start.min(touched.start)..changed.end.max(touched.end);
+        }
+    }
+    // Not refined: a step for an increment would leave the condensed parts to be made anew.
+    let outcome = level.iterate_from(changed, T::one(), settings.stop, 4 * STAGE, &mut count);
+    level.answer(outcome, &count)
 }
 
 impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {

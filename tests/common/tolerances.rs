@@ -37,6 +37,9 @@ pub const VISITS: (usize, usize) = (8, 2000);
 /// The same with conduction that acts on bending, up to a hundred times past the uniqueness condition.
 pub const COUPLED_VISITS: (usize, usize) = (20, 8000);
 
+/// Fields from a warm and from a cold start: two states with residuals up to 1e-10 each.
+pub const HISTORY: f64 = 1e-8;
+
 /// Nodal error over the maximum for the free beam at any N up to a million: a few roundings per node carried
 /// along, of which the relative unknowns keep the sum bounded.
 pub const FREE: f64 = 1e-12;
