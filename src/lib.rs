@@ -28,6 +28,8 @@
 //! 4. Nested meshes, with a continuation in the stiffness on the coarsest, so that a nearly rigid foundation
 //!    costs no iterations on the finest.
 //! 5. u and q by sums of fluxes, exact at nodes. A last sweep for an increment takes out the rounding.
+//! 6. Where bending and potential hold each other, a monolithic Newton method on 4x4 blocks, globalised by the
+//!    work of the residual.
 //!
 //! A solve is [`Status::Converged`] only if the moment that the deformation gives and the one that statics
 //! gives agree, on all elements.
@@ -77,9 +79,8 @@
 //! names field, place, expected and found; not converging is a [`Status`] with the best iterate.
 //!
 //! Conduction in both directions (mu1 and mu2) is iterated as a fixed point together with Newton's steps for
-//! bending. This converges quickly where the coupling is moderate, also far beyond the uniqueness
-//! condition; where it does not, as with a potential so negative that the conduction force outweighs the
-//! foundation, the solve ends as [`Status::Stagnation`].
+//! bending as long as that is quick, else by a monolithic Newton method in (w, theta, u, q) that also finds
+//! solutions far beyond the uniqueness condition.
 #![no_std]
 #![cfg_attr(
     test,

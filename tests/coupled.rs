@@ -8,6 +8,8 @@ use piezobeam::{
     Beam, Conduction, Foundation, Linear, Load, Mesh, Polynomial, Potential, Scene, Status, Steps,
 };
 use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::TestRunner;
 
 /// A scene with everything, by its numbers.
 #[derive(Clone, Debug)]
@@ -120,6 +122,29 @@ proptest! {
     #[test]
     fn a_foundation_that_attracts_by_a_frozen_potential_converges(n in numbers()) {
         prop_assert_eq!(outcome(&n, 0.0)?.0, Status::Converged);
+    }
+}
+
+/// Prints how the work of many scenes is distributed:
+/// `cargo test --release --test coupled -- --ignored --nocapture`.
+#[test]
+#[ignore = "a report for people"]
+fn visits_of_scenes_far_past_uniqueness() {
+    let mut runner = TestRunner::deterministic();
+    for (what, frozen) in [("both ways", false), ("frozen potential", true)] {
+        let mut visits: Vec<f64> = (0..5000)
+            .map(|_| {
+                let n = numbers().new_tree(&mut runner).expect("numbers").current();
+                let (status, visits) = outcome(&n, if frozen { 0.0 } else { n.mu[1] }).expect("a scene");
+                assert_eq!(status, Status::Converged);
+                visits
+            })
+            .collect();
+        visits.sort_by(f64::total_cmp);
+        let [half, most, nearly, all] = [0.5, 0.9, 0.99, 1.0].map(|p| visits[(p * 4999.0) as usize]);
+        println!(
+            "{what}: visits per element: half {half:.1}, 90 % {most:.1}, 99 % {nearly:.1}, all {all:.1}"
+        );
     }
 }
 

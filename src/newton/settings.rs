@@ -87,8 +87,8 @@ impl fmt::Display for Status {
             }
             Self::Stagnation => write!(
                 f,
-                "iterations stopped reducing the residual; two-way conduction this strong, or a law this \
-                 steep, needs smaller mu1 or mu2, or a finer mesh"
+                "iterations stopped reducing the residual; a law this steep, or conduction this strong, needs a \
+                 finer mesh, or a change in smaller steps"
             ),
             Self::Breakdown { element } => write!(
                 f,
