@@ -173,6 +173,24 @@ fn an_overflow_is_never_converged() {
 }
 
 #[test]
+fn a_foundation_stiffer_than_any_mesh_resolves_is_converged_in_equilibrium_or_not_at_all() {
+    let transverse = Steps { breaks: &[0.5], values: &[1e6, -1e6] };
+    for stiffness in [1e20, 1e60, 1e100] {
+        for n in [100, 1000] {
+            let scene = Scene::new(1.0, Beam::elastic(5000.0))
+                .foundation(Foundation { law: Linear(stiffness), gap: () })
+                .load(Load { transverse, axial: (), points: () });
+            let problem = Problem::new(scene, Mesh::uniform(n)).expect("a scene without mistakes");
+            let mut memory = HeapWorkspace::new();
+            let solution = problem.solve(&mut memory, &Settings::default()).expect("settings in range");
+            let error = solution.resultants().equilibrium_error;
+            let converged = solution.report().status == Status::Converged;
+            assert!(!converged || error < tol::RANDOM_EQUILIBRIUM, "k = {stiffness:e}, N = {n}: {error:e}");
+        }
+    }
+}
+
+#[test]
 fn settings_out_of_range_are_refused() {
     let problem = Problem::new(Scene::new(1.0, Beam::elastic(1.0)), Mesh::uniform(2)).expect("a scene");
     let mut memory = HeapWorkspace::new();

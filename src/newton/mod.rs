@@ -281,6 +281,8 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         let blur = T::of(64.0) * T::epsilon() * T::from(self.places.len()).unwrap_or(T::one());
         for _ in 0..=most {
             let mut residual = Residual::none();
+            // Only statics can say that a solve has converged.
+            let mut checked = false;
             if !changed.is_empty() {
                 let swept = self.extent(&changed);
                 count.spend(swept.len())?;
@@ -289,6 +291,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             if residual.relative() <= stop.max(blur) {
                 // Nothing changed, or as little as a sweep can tell: ask statics, on all elements.
                 residual = self.check(scale, count)?;
+                checked = true;
                 // As long as it helps: the sweeps are less exact than the increments that they give.
                 for _ in 0..POLISHINGS {
                     let before = residual.relative();
@@ -313,6 +316,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 if self.shorten(scale, count)? {
                     count.spend(self.places.len())?;
                     residual = self.condense(0..self.places.len(), scale, Solve::State)?;
+                    checked = false;
                 }
                 // Less energy is better, whatever the residual says.
                 self.best = None;
@@ -321,7 +325,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             if self.best.is_none_or(|(_, best)| relative < best.relative()) {
                 self.best = Some((self.current, residual));
             }
-            if relative <= stop {
+            if checked && relative <= stop {
                 return Ok(Outcome::Converged);
             }
             let halved = relative < T::of(0.5) * least;
@@ -511,6 +515,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         }
         let spare = 1 - self.current;
         let step = solve != Solve::State;
+        let whole = swept.len() == self.places.len();
         let (current, meeting, last) = (self.current, self.meeting, self.places.len() - 1);
         let length = model.length();
         let mut residual = Residual::none();
@@ -602,7 +607,11 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             residual.see_force(gap.x(), length);
         }
         residual.load = residual.load * length;
-        residual.size = residual.size.max(self.best.map_or(T::zero(), |(_, best)| best.size));
+        if !whole {
+            // Of the elements passed over no more is known than the last moments. (After a whole sweep they would
+            // only make the residual small: an early state may be pressed in by far more than the solution.)
+            residual.size = residual.size.max(self.best.map_or(T::zero(), |(_, best)| best.size));
+        }
         if residual.is_finite() { Ok(residual) } else { Err(Halt::Breakdown(meeting - 1)) }
     }
 
