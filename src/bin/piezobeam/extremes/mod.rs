@@ -47,6 +47,8 @@ enum Expected {
     Refused(&'static str),
     /// This status.
     Ends(&'static str),
+    /// Any status but converged.
+    Fails,
 }
 
 struct Case {
@@ -213,6 +215,10 @@ impl Case {
     fn ends(self, status: &'static str) -> Self {
         let meshes = vec![100];
         Self { expected: Expected::Ends(status), reference: Reference::None, meshes, ..self }
+    }
+
+    fn fails(self) -> Self {
+        Self { expected: Expected::Fails, ..self.ends("") }
     }
 
     fn on(self, meshes: &[usize]) -> Self {
