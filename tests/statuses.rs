@@ -202,6 +202,15 @@ fn a_gap_far_above_the_bending_converges_on_fine_meshes() {
         assert_eq!(report.status, Status::Converged, "N = {n}: {report:?}");
         assert!(report.element_visits <= 16 * n, "N = {n}: {report:?}");
     }
+    // Slopes of 1e5 on elements of 5e-7.
+    let tip = Table { x: &[0.0, 0.4999995, 0.5, 0.5000005, 1.0], y: &[0.05, 0.05, 0.005, 0.05, 0.05] };
+    for n in [2, 100, 1000] {
+        let scene = Scene::new(1.0, Beam::elastic(5000.0))
+            .foundation(Foundation { law: Linear(1e8), gap: tip })
+            .load(plain(2e4));
+        let report = ends(scene, Mesh::uniform(n), Settings::default());
+        assert_eq!(report.status, Status::Converged, "N = {n}: {report:?}");
+    }
 }
 
 #[test]

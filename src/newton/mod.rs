@@ -289,15 +289,15 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 residual = self.condense(swept, scale, Solve::State)?;
             }
             // A gap far above the beam's own bending adds rounding that is not known beforehand.
-            let idle = rounds_since_best == IDLE && residual.relative() <= T::of(BLURRED);
-            if residual.relative() <= stop.max(blur) || idle {
+            let done = residual.relative() <= stop.max(blur);
+            if done || rounds_since_best == IDLE {
                 // Nothing changed, or as little as a sweep can tell: ask statics, on all elements.
                 residual = self.check(scale, count)?;
                 checked = true;
                 // As long as it helps: the sweeps are less exact than the increments that they give.
                 for _ in 0..POLISHINGS {
                     let before = residual.relative();
-                    if before <= stop {
+                    if before <= stop || !done && before > T::of(BLURRED).max(blur) {
                         break;
                     }
                     self.best = Some((self.current, residual));
@@ -795,10 +795,10 @@ fn beyond<T: Real>(gap: T::Vec2, rounding: T::Vec2, held: T::Vec2, h: T) -> T::V
 /// Increments taken one after the other, each from sweeps of its own.
 const POLISHINGS: usize = 6;
 
-/// Rounds without halving the residual after which statics is asked whether more than rounding is left of it, ...
+/// Rounds without halving the residual after which statics is asked whether more than rounding is left of it.
 const IDLE: usize = 3;
 
-/// ... where it is at most this.
+/// Residual by statics above which more than rounding is left then.
 const BLURRED: f64 = 1e-4;
 
 /// Rounds without halving the residual after which an iteration counts as stalled.
