@@ -796,7 +796,7 @@ fn beyond<T: Real>(gap: T::Vec2, rounding: T::Vec2, held: T::Vec2, h: T) -> T::V
 const POLISHINGS: usize = 6;
 
 /// Rounds without halving the residual after which statics is asked whether more than rounding is left of it.
-const IDLE: usize = 3;
+const IDLE: usize = 8;
 
 /// Residual by statics above which more than rounding is left then.
 const BLURRED: f64 = 1e-4;
