@@ -69,8 +69,8 @@ fn foundation() -> Group {
     Group {
         name: "stiffness of the foundation",
         comment: "From no foundation to one that nothing can press in. From 1e20 on the bending is compared with \
-                  the closed form of the rigid limit, from which that of a stiffness k is off by (C/k)^(3/4), \
-                  2e-12 at 1e20. The layer at the contact's edge is (C/k)^(1/4) wide: from 1e16 on no mesh here \
+                  the closed form of the rigid limit, from which that of a stiffness k is off by some (C/k)^(3/4), \
+                  1e-11 of it at 1e20. The layer at the contact's edge is (C/k)^(1/4) wide: from 1e16 on no mesh here \
                   resolves it, and what is left is the mesh's own error. Pressed down everywhere, all of the \
                   bending is f/k and the layers at the clamps are most of its error.",
         cases,
