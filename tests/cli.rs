@@ -201,3 +201,42 @@ fn time_and_check_say_what_they_promise() {
     assert!(said.contains("the scene is sound") && said.contains("N m^2/V^2"), "{said}");
     assert!(said.contains("certified") && said.contains("warning: the axial strain"), "{said}");
 }
+
+#[test]
+fn extremes_end_as_expected_or_say_which_do_not() {
+    let folder = folder();
+    let output = piezobeam(folder.path(), "extremes --quick --format json");
+    let value: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let groups = value["groups"].as_array().expect("groups");
+    let rows: Vec<&Value> = groups.iter().flat_map(|g| g["rows"].as_array().expect("rows")).collect();
+    assert!(groups.len() > 10 && rows.len() > 200, "{} groups, {} rows", groups.len(), rows.len());
+    for row in &rows {
+        for key in ["case", "precision", "expected", "status", "reference"] {
+            assert!(row[key].is_string(), "{key}: {row}");
+        }
+        assert!(row["elements"].as_u64().is_some_and(|n| n <= 110), "quick: {row}");
+        let converged = row["status"] == "converged";
+        assert!(!converged || row["residual"].as_f64().is_some_and(|r| r < 1e-4), "{row}");
+    }
+    let with = |verdict: &str| rows.iter().filter(|row| row["verdict"] == verdict).count();
+    let wrong = with("wrong");
+    assert_eq!(value["wrong"], wrong);
+    assert_eq!(with("ok") + with("refused") + wrong, rows.len());
+    assert_eq!(output.status.code(), Some(i32::from(wrong > 0)));
+    // Whatever is not solved says so: no answer is wrong that is called converged.
+    let said = |row: &&&Value, word: &str| row["remarks"].to_string().contains(word);
+    let false_answers = rows.iter().filter(|row| row["verdict"] == "wrong" && row["status"] == "converged");
+    for word in ["panicked", "residual", "not finite", "pulls", "zones"] {
+        assert_eq!(false_answers.clone().filter(|row| said(row, word)).count(), 0, "{word}");
+    }
+}
+
+#[test]
+fn extremes_make_a_document() {
+    let folder = folder();
+    let line = "extremes --quick --format markdown --out extremes.md";
+    assert!(matches!(piezobeam(folder.path(), line).status.code(), Some(0 | 1)));
+    let text = std::fs::read_to_string(folder.path().join("extremes.md")).expect("a document");
+    assert!(text.starts_with("# Extremes\n\n`cargo beam extremes --quick --format markdown"), "{text}");
+    assert!(refusal(&folder, line).contains("--force"));
+}

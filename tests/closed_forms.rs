@@ -233,6 +233,24 @@ fn full_contact_is_a_beam_on_springs() {
 }
 
 #[test]
+fn a_beam_does_not_sag_between_nodes_into_a_foundation_stiffer_than_its_elements() {
+    let (f, x) = (1e6, points(1000, 1.0));
+    for k in [1e14, 1e16, 1e20] {
+        let scene = Scene::new(1.0, Beam::elastic(5000.0))
+            .foundation(Foundation { law: Linear(k), gap: () })
+            .load(transverse(f));
+        let (report, at) = fields(scene, Mesh::uniform(50), &x);
+        converged(&report);
+        for at in at {
+            // Everywhere as deep as the pressure says, which the mesh resolves to a factor beside the clamps.
+            let pressure = at.pressure.unwrap_or(f64::NAN);
+            assert!((at.bending - pressure / k).abs() <= 1e-12 * f / k, "k = {k:e}: {at:?}");
+            assert!((-1e-12 * f / k..=3.0 * f / k).contains(&at.bending), "k = {k:e}: {at:?}");
+        }
+    }
+}
+
+#[test]
 fn a_preload_in_full_contact_is_a_shift_of_the_load() {
     preload_shifts_the_load(10, &[(1.0, 0.0), (100.0, 0.5), (1e4, 5.0)]);
     preload_shifts_the_load(100, &[(100.0, 0.5), (1e4, 5.0), (1e6, 500.0)]);

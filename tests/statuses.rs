@@ -165,6 +165,47 @@ fn an_overflow_is_never_converged() {
 }
 
 #[test]
+fn a_foundation_stiffer_than_any_mesh_resolves_is_converged_in_equilibrium_or_not_at_all() {
+    let transverse = Steps { breaks: &[0.5], values: &[1e6, -1e6] };
+    for stiffness in [1e20, 1e60, 1e100] {
+        for n in [100, 1000] {
+            let scene = Scene::new(1.0, Beam::elastic(5000.0))
+                .foundation(Foundation { law: Linear(stiffness), gap: () })
+                .load(Load { transverse, axial: (), points: () });
+            let problem = Problem::new(scene, Mesh::uniform(n)).expect("a scene without mistakes");
+            let mut memory = HeapWorkspace::new();
+            let solution = problem.solve(&mut memory, &Settings::default()).expect("settings in range");
+            let error = solution.resultants().equilibrium_error;
+            let converged = solution.report().status == Status::Converged;
+            assert!(!converged || error < tol::RANDOM_EQUILIBRIUM, "k = {stiffness:e}, N = {n}: {error:e}");
+        }
+    }
+}
+
+#[test]
+fn a_gap_far_above_the_bending_converges_on_fine_meshes() {
+    // Of the penetration most is the gap's own rigid motion, whose rounding is in the forces that sweeps compare.
+    let tent = Table { x: &[0.0, 0.45, 0.5, 0.55, 1.0], y: &[0.05, 0.05, 0.005, 0.05, 0.05] };
+    for n in [1000, 4000, 10_000, 40_000] {
+        let scene = Scene::new(1.0, Beam::elastic(5000.0))
+            .foundation(Foundation { law: Linear(1e8), gap: tent })
+            .load(plain(2e4));
+        let report = ends(scene, Mesh::uniform(n), Settings::default());
+        assert_eq!(report.status, Status::Converged, "N = {n}: {report:?}");
+        assert!(report.element_visits <= 16 * n, "N = {n}: {report:?}");
+    }
+    // Slopes of 1e5 on elements of 5e-7.
+    let tip = Table { x: &[0.0, 0.4999995, 0.5, 0.5000005, 1.0], y: &[0.05, 0.05, 0.005, 0.05, 0.05] };
+    for n in [2, 100, 1000] {
+        let scene = Scene::new(1.0, Beam::elastic(5000.0))
+            .foundation(Foundation { law: Linear(1e8), gap: tip })
+            .load(plain(2e4));
+        let report = ends(scene, Mesh::uniform(n), Settings::default());
+        assert_eq!(report.status, Status::Converged, "N = {n}: {report:?}");
+    }
+}
+
+#[test]
 fn settings_out_of_range_are_refused() {
     let problem = Problem::new(Scene::new(1.0, Beam::elastic(1.0)), Mesh::uniform(2)).expect("a scene");
     let mut memory = HeapWorkspace::new();

@@ -290,19 +290,26 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         let blur = T::of(64.0) * T::epsilon() * T::from(self.places.len()).unwrap_or(T::one());
         for _ in 0..=most {
             let mut residual = Residual::none();
+            // Only statics can say that a solve has converged.
+            let mut checked = false;
             if !changed.is_empty() {
                 let swept = self.extent(&changed);
                 count.spend(swept.len())?;
                 residual = self.condense(swept, scale, Solve::State)?;
             }
+            // Rounding may be all that is left without being known beforehand: a gap far above the beam's own
+            // bending adds to it. A sweep that gains nothing then asks statics, too.
             let swept = residual.relative();
-            if swept <= stop.max(blur) || (swept <= T::of(NEAR) && swept > T::of(0.5) * last) {
+            let done = swept <= stop.max(blur);
+            let near = swept <= T::of(NEAR) && swept > T::of(0.5) * last;
+            if done || near || rounds_since_best == IDLE {
                 // Nothing changed, or as little as a sweep can tell: ask statics, on all elements.
                 residual = self.check(scale, count)?;
+                checked = true;
                 // As long as it helps: the sweeps are less exact than the increments that they give.
                 for _ in 0..POLISHINGS {
                     let before = residual.relative();
-                    if before <= stop {
+                    if before <= stop || !done && before > T::of(BLURRED).max(blur) {
                         break;
                     }
                     self.best = Some((self.current, residual));
@@ -323,6 +330,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 if self.shorten(scale, count)? {
                     count.spend(self.places.len())?;
                     residual = self.condense(0..self.places.len(), scale, Solve::State)?;
+                    checked = false;
                 }
                 // Less energy is better, whatever the residual says.
                 self.best = None;
@@ -331,7 +339,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             if self.best.is_none_or(|(_, best)| relative < best.relative()) {
                 self.best = Some((self.current, residual));
             }
-            if relative <= stop {
+            if checked && relative <= stop {
                 return Ok(Outcome::Converged);
             }
             let halved = relative < T::of(0.5) * least;
@@ -533,6 +541,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         }
         let spare = 1 - self.current;
         let step = solve != Solve::State;
+        let whole = swept.len() == self.places.len();
         let (current, meeting, last) = (self.current, self.meeting, self.places.len() - 1);
         let length = model.length();
         let mut residual = Residual::none();
@@ -623,9 +632,13 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             residual.see(gap, T::Vec2::default(), T::zero());
             residual.see_force(gap.x(), length);
         }
-        self.fresh = !step && (self.fresh || swept.len() == self.places.len());
+        self.fresh = !step && (self.fresh || whole);
         residual.load = residual.load * length;
-        residual.size = residual.size.max(self.best.map_or(T::zero(), |(_, best)| best.size));
+        if !whole {
+            // Of the elements passed over no more is known than the last moments. (After a whole sweep they would
+            // only make the residual small: an early state may be pressed in by far more than the solution.)
+            residual.size = residual.size.max(self.best.map_or(T::zero(), |(_, best)| best.size));
+        }
         if residual.is_finite() { Ok(residual) } else { Err(Halt::Breakdown(meeting - 1)) }
     }
 
@@ -813,6 +826,12 @@ const NEAR: f64 = 1e-7;
 /// Rounds that may fall short of a tenth of the residual before where the potential acts on bending, until the
 /// monolithic method takes over.
 const SLOW: usize = 4;
+
+/// Rounds without halving the residual after which statics is asked whether more than rounding is left of it.
+const IDLE: usize = 8;
+
+/// Residual by statics above which more than rounding is left then.
+const BLURRED: f64 = 1e-4;
 
 /// Rounds without halving the residual after which an iteration counts as stalled.
 const PATIENCE: usize = 40;

@@ -15,9 +15,10 @@ Examples:
   piezobeam solve beam.toml --plot beam.svg       ... and one page of pictures
   piezobeam solve beam.toml --format json | jq .contact.force
   piezobeam paper --out paper                     the figures of the paper, recomputed
+  piezobeam extremes --quick                      does it hold at the edges of what can be asked?
 
 Exit status:
-  0  the solve converged (check, paper, time: all went well)
+  0  the solve converged (check, paper, time, extremes: all went well)
   1  the solve did not converge; the best iterate is still reported, marked as such
   2  bad input: the command line, the scene file, or an output that cannot be written";
 
@@ -31,6 +32,14 @@ Units of the samples: x, bending and stretching in m; slope in m/m; moment in N 
 axial_force in N; potential in V; electric_displacement in C.
 Bending is positive towards the foundation.
 A field the scene does not have is null in JSON and an empty cell in CSV.";
+
+const EXTREMES: &str = "\
+Examples:
+  piezobeam extremes --quick
+  piezobeam extremes --format json | jq '.groups[].rows[] | select(.verdict == \"wrong\")'
+  piezobeam extremes --format markdown --out docs/extremes.md --force
+
+Exit status 1: a row is wrong, that is, it did not end as the table says that it should.";
 
 /// Static equilibrium of a piezoelectric beam, clamped at both ends, on a deformable foundation.
 #[derive(Debug, Parser)]
@@ -54,6 +63,9 @@ pub enum Command {
     /// Measure how long a scene takes to solve
     #[command(after_help = "Example:\n  piezobeam time beam.toml --elements 10000 --repeat 20 --format json")]
     Time(TimeArgs),
+    /// Solve scenes with extreme data and meshes, and compare each end with what is expected of it
+    #[command(after_help = EXTREMES)]
+    Extremes(ExtremesArgs),
 }
 
 #[derive(Debug, Args)]
@@ -125,6 +137,22 @@ pub struct TimeArgs {
     pub format: TimeFormat,
 }
 
+#[derive(Debug, Args)]
+pub struct ExtremesArgs {
+    /// Leave out meshes of more than 100 elements
+    #[arg(long)]
+    pub quick: bool,
+    /// text for people, markdown for documents, json for machines
+    #[arg(long, value_enum, value_name = "FORMAT", default_value_t = TableFormat::Text)]
+    pub format: TableFormat,
+    /// Write the table to this file instead of standard output
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Replace an output file that exists
+    #[arg(long)]
+    pub force: bool,
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Precision {
     F64,
@@ -141,6 +169,13 @@ pub enum Format {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum TimeFormat {
     Text,
+    Json,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum TableFormat {
+    Text,
+    Markdown,
     Json,
 }
 

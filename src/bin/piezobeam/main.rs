@@ -5,6 +5,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::panic, reason = "a test that panics has failed"))]
 
 mod cli;
+mod extremes;
 mod model;
 mod output;
 mod paper;
@@ -14,7 +15,9 @@ mod report;
 mod scene_file;
 mod tasks;
 
-use cli::{CheckArgs, Cli, Command, Format, PaperArgs, SolveArgs, TimeArgs, TimeFormat};
+use cli::{
+    CheckArgs, Cli, Command, ExtremesArgs, Format, PaperArgs, SolveArgs, TableFormat, TimeArgs, TimeFormat,
+};
 use indicatif::{ProgressBar, ProgressStyle};
 use report::{Checked, Picture};
 use scene_file::SceneFile;
@@ -36,6 +39,7 @@ fn main() -> ExitCode {
         Command::Check(args) => check(&args),
         Command::Paper(args) => paper(&args),
         Command::Time(args) => time(&args),
+        Command::Extremes(args) => extremes(&args),
     };
     match outcome {
         Ok(true) => ExitCode::SUCCESS,
@@ -122,6 +126,26 @@ fn time(args: &TimeArgs) -> Outcome {
         TimeFormat::Json => render::json::time(&timing),
     })?;
     Ok(timing.status == report::CONVERGED)
+}
+
+fn extremes(args: &ExtremesArgs) -> Outcome {
+    if let Some(path) = &args.out {
+        output::check(path, args.force)?;
+    }
+    let table = extremes::run(args.quick);
+    let text = match args.format {
+        TableFormat::Text => render::extremes::text(&table),
+        TableFormat::Markdown => render::extremes::markdown(&table),
+        TableFormat::Json => render::json::extremes(&table),
+    };
+    match &args.out {
+        Some(path) => output::write_all(&[(path, text)], args.force)?,
+        None => output::print(&text)?,
+    }
+    if table.wrong > 0 {
+        eprintln!("piezobeam: {} of {} rows are wrong", table.wrong, table.rows);
+    }
+    Ok(table.wrong == 0)
 }
 
 fn picture(file: &SceneFile, solved: tasks::Solved) -> Picture {

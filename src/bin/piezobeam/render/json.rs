@@ -5,6 +5,7 @@ use std::io::{Result, Write};
 use serde::Serialize;
 use serde_json::ser::{CompactFormatter, Formatter, PrettyFormatter, Serializer};
 
+use crate::extremes::Extremes;
 use crate::report::{Report, Timing};
 
 pub fn solve(report: &Report) -> String {
@@ -13,6 +14,10 @@ pub fn solve(report: &Report) -> String {
 
 pub fn time(timing: &Timing) -> String {
     write(timing)
+}
+
+pub fn extremes(table: &Extremes) -> String {
+    write(table)
 }
 
 fn write(value: &impl Serialize) -> String {

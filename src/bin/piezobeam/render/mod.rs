@@ -5,6 +5,7 @@
 pub mod beam;
 pub mod chart;
 pub mod csv;
+pub mod extremes;
 pub mod figures;
 #[cfg(test)]
 pub mod fixture;

@@ -184,7 +184,7 @@ fn pairs(rows: &[(String, String)]) -> String {
 }
 
 /// A table as lines without the blanks that pad them on either side.
-fn lines(mut table: Table) -> String {
+pub(super) fn lines(mut table: Table) -> String {
     if let Some(first) = table.column_mut(0) {
         first.set_padding((0, 1));
     }

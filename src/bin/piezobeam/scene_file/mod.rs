@@ -58,6 +58,21 @@ pub struct SceneFile {
 }
 
 impl SceneFile {
+    /// A beam that only bends, without a file.
+    pub fn beam(length: f64, bending: ProfileSpec) -> Self {
+        Self {
+            name: String::new(),
+            length,
+            beam: BeamTable { bending, axial: None, piezo: None, permittivity: None },
+            foundation: None,
+            conduction: None,
+            load: LoadTable::default(),
+            potential: None,
+            mesh: MeshTable::default(),
+            lines: FieldLines::default(),
+        }
+    }
+
     /// The 1-based line of a field such as `beam.bending` or
     /// `load.points[2].x`, with points counted from 0.
     ///

@@ -21,6 +21,12 @@ pub enum ProfileSpec {
     Expression(Expression),
 }
 
+impl From<f64> for ProfileSpec {
+    fn from(value: f64) -> Self {
+        Self::Number(value)
+    }
+}
+
 impl ProfileSpec {
     /// The positions inside the beam where one piece ends and the next begins.
     pub fn breaks(&self) -> &[f64] {
