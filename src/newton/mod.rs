@@ -28,8 +28,9 @@
 //! *Only what changed.* Both ends are condensed towards a meeting point among the elements whose matrices
 //! changed; the parts outside them stay as they are. Convergence is decided on all elements.
 //!
-//! *Descent.* Without the potential's action on bending the state is the minimum of a convex energy. A full step
-//! that made the residual grow is cut to where the energy is least along it ([`Level::shorten`]).
+//! *Descent.* Without the potential's action on bending the state is the minimum of a convex energy. Where full
+//! steps do not halve the residual, increments are cut to where the energy is least along them
+//! ([`Level::lower`]): this converges from anywhere.
 
 pub(crate) mod nested;
 mod settings;
@@ -178,6 +179,8 @@ pub(crate) struct Level<'a, 'b, T: Real, M: Model<T>> {
     pub(crate) best: Option<(usize, Residual<T>)>,
     /// Elements before this one are condensed from the left, the others from the right.
     meeting: usize,
+    /// Elements whose law the continuation in the stiffness scales.
+    scaled: Range<usize>,
 }
 
 /// What a sweep solves for.
@@ -199,10 +202,20 @@ pub(crate) enum Outcome {
     Stalled,
 }
 
+/// What became of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Cut {
+    Whole,
+    Shorter,
+    /// It lowers the energy by no more than rounding.
+    Nowhere,
+}
+
 impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     pub(crate) fn new(context: &'b Context<'a, T, M>, places: &'b mut [Place<T, M>]) -> Self {
         let meeting = (places.len() / 2).max(1);
-        Self { context, places, node: Node::default(), current: 0, best: None, meeting }
+        let scaled = 0..places.len();
+        Self { context, places, node: Node::default(), current: 0, best: None, meeting, scaled }
     }
 
     /// Is bending in a loop with the potential?
@@ -284,38 +297,25 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             if !changed.is_empty() {
                 let swept = self.extent(&changed);
                 count.spend(swept.len())?;
-                residual = self.condense(swept, scale, Solve::State)?;
+                let condensed = self.condense(swept, scale, Solve::State);
+                // There is a way back where a state was good before.
+                residual = if self.best.is_some() { self.tried(condensed)? } else { condensed? };
             }
-            if residual.relative() <= stop.max(blur) {
+            if residual.relative() <= stop.max(blur).max(residual.floor()) {
                 // Nothing changed, or as little as a sweep can tell: ask statics, on all elements.
-                residual = self.check(scale, count)?;
-                // As long as it helps: the sweeps are less exact than the increments that they give.
-                for _ in 0..POLISHINGS {
-                    let before = residual.relative();
-                    if before <= stop {
-                        break;
-                    }
-                    self.best = Some((self.current, residual));
-                    residual = self.polish(scale, count)?;
-                    if residual.relative() > T::of(0.5) * before {
-                        break;
-                    }
-                }
-                if residual.relative() > stop {
-                    // The factors may be those of an increment: condense the state again.
-                    count.spend(self.places.len())?;
-                    self.condense(0..self.places.len(), scale, Solve::State)?;
-                }
+                residual = self.settle(scale, stop, count)?;
             }
-            let last = self.best.map(|(_, best)| best.relative());
-            if self.convex() && last.is_some_and(|last| residual.relative() > last) {
-                // A full step that made things worse: go only as far as the energy falls.
-                if self.shorten(scale, count)? {
-                    count.spend(self.places.len())?;
-                    residual = self.condense(0..self.places.len(), scale, Solve::State)?;
+            if self.convex() && (rounds_since_best >= FULL_STEPS || !residual.is_finite()) {
+                // Full steps do not help from here: down the energy from the best state, unless there are
+                // better ways to start.
+                if most < usize::MAX {
+                    return Ok(Outcome::Stalled);
                 }
-                // Less energy is better, whatever the residual says.
-                self.best = None;
+                self.keep_best();
+                match self.lower(T::of(0.5) * least, scale, stop, count)? {
+                    Some(lower) => residual = lower,
+                    None => return Ok(Outcome::Floor),
+                }
             }
             let relative = residual.relative();
             if self.best.is_none_or(|(_, best)| relative < best.relative()) {
@@ -328,10 +328,10 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             rounds_since_best = if halved { 0 } else { rounds_since_best + 1 };
             least = least.min(relative);
             // At the floor no progress can be expected; above it, patience ends.
-            if least <= T::of(4.0) * residual.floor() && rounds_since_best >= 2 {
+            if least <= T::of(4.0) * residual.floor() && rounds_since_best >= FLOOR_STEPS {
                 return Ok(Outcome::Floor);
             }
-            if rounds_since_best > PATIENCE {
+            if rounds_since_best > PATIENCE && !self.convex() {
                 return Ok(Outcome::Stalled);
             }
             changed = self.substitute(false).ok_or(Halt::Breakdown(self.meeting - 1))?;
@@ -344,74 +344,186 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         Ok(Outcome::Stalled)
     }
 
+    /// From the current state, steps that lower the energy, each cut to where it is least, until the
+    /// residual is at most `enough`; `None` where they lower it by no more than rounding.
+    ///
+    /// The steps are increments: a sweep for the whole state has rounding in it that may be more than what is
+    /// left to go.
+    fn lower(
+        &mut self,
+        enough: T,
+        scale: T,
+        stop: T,
+        count: &mut Count,
+    ) -> Result<Option<Residual<T>>, Halt> {
+        let mut residual = self.check(scale, count)?;
+        while residual.relative() > enough.max(stop) {
+            self.best = Some((self.current, residual));
+            let polished = self.polish(scale, count);
+            residual = self.tried(polished)?;
+            if residual.relative() <= enough {
+                break;
+            }
+            match self.shorten(scale, count)? {
+                Cut::Whole => {}
+                Cut::Shorter => residual = self.check(scale, count)?,
+                // No energy can judge this step; the residual still can.
+                Cut::Nowhere if self.best.is_some_and(|(_, best)| residual.relative() < best.relative()) => {}
+                Cut::Nowhere => return Ok(None),
+            }
+        }
+        if residual.relative() > stop {
+            // The factors are those of an increment: condense the state itself.
+            count.spend(self.places.len())?;
+            self.condense(0..self.places.len(), scale, Solve::State)?;
+        }
+        self.best = Some((self.current, residual));
+        Ok(Some(residual))
+    }
+
+    /// The residual of the current state by statics; where that is above `stop`, increments take rounding
+    /// out as long as it helps: the sweeps are less exact than the increments that they give.
+    fn settle(&mut self, scale: T, stop: T, count: &mut Count) -> Result<Residual<T>, Halt> {
+        let mut residual = self.check(scale, count)?;
+        for _ in 0..POLISHINGS {
+            let before = residual.relative();
+            if before <= stop {
+                break;
+            }
+            self.best = Some((self.current, residual));
+            let polished = self.polish(scale, count);
+            residual = self.tried(polished)?;
+            if residual.relative() > T::of(0.5) * before {
+                break;
+            }
+        }
+        if residual.relative() > stop {
+            if let Some((_, best)) = self.best
+                && best.relative() <= residual.relative()
+            {
+                residual = best;
+                self.keep_best();
+            }
+            // The factors may be those of an increment: condense the state again.
+            count.spend(self.places.len())?;
+            self.condense(0..self.places.len(), scale, Solve::State)?;
+        }
+        Ok(residual)
+    }
+
+    /// The residual after a step that can be taken back or cut: boundless where the step left the numbers that
+    /// the law or the sweep can hold.
+    fn tried(&self, residual: Result<Residual<T>, Halt>) -> Result<Residual<T>, Halt> {
+        match residual {
+            Err(Halt::Law(_, Fault::NotFinite) | Halt::Breakdown(_)) if self.convex() => {
+                Ok(Residual { mismatch: T::infinity(), size: T::one(), ..Residual::none() })
+            }
+            residual => residual,
+        }
+    }
+
+    /// The scale of each element's law.
+    fn scaling(&self, scale: T) -> impl Fn(usize) -> T + use<T, M> {
+        let Range { start, end } = self.scaled;
+        move |i| if (start..end).contains(&i) { scale } else { T::one() }
+    }
+
     /// Is bending, with the potential as it is, the minimum of a convex energy?
-    fn convex(&self) -> bool {
+    pub(crate) fn convex(&self) -> bool {
         self.context.onto.is_none()
     }
 
-    /// After a step from the best state (the spare one) to the current one that did not reduce the residual:
-    /// moves the current state to where the energy is least in between, and says whether it did.
+    /// After a step from the best state (the spare one) to the current one: cuts it to where the energy is
+    /// least along it, unless the energy falls all the way.
     ///
     /// The energy is convex and the step a direction of descent, so its derivative along the step rises
-    /// through zero; the root is bracketed and found to a tenth by the Illinois method, with bisections.
-    fn shorten(&mut self, scale: T, count: &mut Count) -> Result<bool, Halt> {
+    /// through zero; the root is bracketed by false positions, kept off the bracket's ends, and the step ends
+    /// below it, where at most half of the derivative is left.
+    fn shorten(&mut self, scale: T, count: &mut Count) -> Result<Cut, Halt> {
         let spare = 1 - self.current;
         if self.best.is_none_or(|(best, _)| best != spare) {
-            return Ok(false);
+            return Ok(Cut::Whole);
         }
-        let (zero, one) = (T::zero(), T::one());
-        let start = self.derivative(zero, scale, count)?;
-        let end = self.derivative(one, scale, count)?;
-        let small = T::of(0.1) * start.abs();
-        if !(start < zero && end > small) {
-            return Ok(false);
+        let (zero, one, tenth) = (T::zero(), T::one(), T::of(0.1));
+        let mut fault = None;
+        let (end, _) = self.derivative(one, scale, count, &mut fault)?;
+        if end <= zero {
+            return Ok(Cut::Whole);
         }
+        let (start, rounding) = self.derivative(zero, scale, count, &mut fault)?;
+        if start >= -rounding {
+            return Ok(Cut::Nowhere);
+        }
+        let enough = T::of(-0.5) * start;
         let (mut low, mut high) = ((zero, start), (one, end));
-        let mut t = one;
-        for round in 0..40 {
-            let falsi = low.0 - low.1 * ((high.0 - low.0) / (high.1 - low.1));
-            let middle = T::of(0.5) * (low.0 + high.0);
-            t = if round % 3 == 2 || !(falsi > low.0 && falsi < high.0) { middle } else { falsi };
-            let slope = self.derivative(t, scale, count)?;
-            if slope.abs() <= small {
+        let mut slope = end;
+        for _ in 0..CUTS {
+            if slope <= zero && slope >= -enough {
                 break;
             }
-            // Illinois: the end that stays is weighted less, so that it does not stay for good.
-            if slope < zero {
-                low = (t, slope);
-                high.1 = T::of(0.5) * high.1;
-            } else {
-                high = (t, slope);
-                low.1 = T::of(0.5) * low.1;
-            }
+            let width = high.0 - low.0;
+            let falsi = low.0 - low.1 * (width / (high.1 - low.1));
+            let t = falsi.max(low.0 + tenth * width).min(high.0 - tenth * width);
+            slope = self.derivative(t, scale, count, &mut fault)?.0;
+            *(if slope <= zero { &mut low } else { &mut high }) = (t, slope);
         }
-        if t <= zero {
-            return Ok(false);
+        if let Some(halt) = fault
+            && low.1 < -enough
+            && !high.1.is_finite()
+        {
+            // The energy falls all the way to where the law ends.
+            return Err(halt);
+        }
+        let t = low.0;
+        if t == zero {
+            return Ok(Cut::Nowhere);
         }
         let current = self.current;
         for Place { work, .. } in self.places.iter_mut() {
             work.states[current] = work.states[spare].toward(work.states[current], t);
         }
-        Ok(true)
+        Ok(Cut::Shorter)
     }
 
     /// Derivative of the energy along the step from the spare state to the current one, at the share t of
-    /// it.
-    fn derivative(&self, t: T, scale: T, count: &mut Count) -> Result<T, Halt> {
+    /// it, and what rounding may make of it; infinite, with a `fault`, where the law is.
+    fn derivative(
+        &self,
+        t: T,
+        scale: T,
+        count: &mut Count,
+        fault: &mut Option<Halt>,
+    ) -> Result<(T, T), Halt> {
         count.spend(self.places.len())?;
         let model = self.context.model;
-        let mut sum = Sum::<T>::default();
+        let scale = self.scaling(scale);
+        let (mut sum, mut size) = (Sum::<T>::default(), T::zero());
         for (i, Place { element, work }) in self.places.iter().enumerate() {
             let (from, to) = (work.states[1 - self.current], work.states[self.current]);
             let State { e, d } = from.toward(to, t);
             let motion = Motion::new(element.h, e, d);
-            let contact = Contact::at(model, element, &motion, Cubic::default, scale)
-                .map_err(|fault| Halt::Law(i, fault))?;
+            let contact = match Contact::at(model, element, &motion, Cubic::default, scale(i)) {
+                Err(Fault::NotFinite) => {
+                    *fault = Some(Halt::Law(i, Fault::NotFinite));
+                    return Ok((T::infinity(), T::zero()));
+                }
+                contact => contact.map_err(|fault| Halt::Law(i, fault))?,
+            };
             let (ce, cd) = contact.force(&motion, element.h);
-            sum.add((element.deforming_force(e) + ce).times(to.e - from.e));
-            sum.add((cd - element.fr).times(to.d - from.d));
+            size = size + contact.size(&motion, cd, element.h) * (to.d - from.d).x().abs();
+            let held = element.deforming_force(e) + ce;
+            if i == 0 {
+                // What the step closes of compatibility at the clamp is no work of the beam's.
+                let left = (to.e - from.e) + Bending::carry(element.h, to.d - from.d);
+                sum.add(-held.times(left));
+            }
+            for part in [held.times(to.e - from.e), (cd - element.fr).times(to.d - from.d)] {
+                sum.add(part);
+                size = size + part.abs();
+            }
         }
-        Ok(sum.value())
+        let sum = sum.value();
+        Ok((if sum.is_finite() { sum } else { T::infinity() }, T::of(16.0) * T::epsilon() * size))
     }
 
     /// One step for an increment of the best state.
@@ -505,6 +617,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     #[inline(never)]
     fn condense(&mut self, swept: Range<usize>, scale: T, solve: Solve<T>) -> Result<Residual<T>, Halt> {
         let Context { model, ref onto, .. } = *self.context;
+        let scale = self.scaling(scale);
         let (mut left, mut right) = (self.context.left, self.context.right);
         if let Solve::Increment { open } = solve {
             (left.value, right.value) = (open, T::Vec2::default());
@@ -530,7 +643,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 };
                 let Place { element, work } = &mut self.places[i];
                 let h = element.h;
-                let (contact, motion) = linearise(model, element, work, &node, current, onto, scale)
+                let (contact, motion) = linearise(model, element, work, &node, current, onto, scale(i))
                     .map_err(|fault| Halt::Law(i, fault))?;
                 let (ce, cd) = contact.force(&motion, h);
                 let held = element.deforming_force(motion.e) + ce;
@@ -541,7 +654,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 } else {
                     residual.measure(held, h);
                 }
-                residual.load = residual.load + cd.x().abs() + element.fr.x().abs();
+                residual.load = residual.load + contact.size(&motion, cd, h) + element.fr.x().abs();
                 let mut stamp = contact.stamp(element);
                 if step {
                     (stamp.fe, stamp.fr) = (-work.states[spare].e, T::Vec2::default());
@@ -568,7 +681,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 }
                 let Place { element, work } = &mut self.places[i];
                 let h = element.h;
-                let (contact, motion) = linearise(model, element, work, &node, current, onto, scale)
+                let (contact, motion) = linearise(model, element, work, &node, current, onto, scale(i))
                     .map_err(|fault| Halt::Law(i, fault))?;
                 let (ce, cd) = contact.force(&motion, h);
                 let deforming = element.deforming_force(motion.e) + ce;
@@ -581,7 +694,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 } else {
                     residual.measure(held, -h);
                 }
-                residual.load = residual.load + cd.x().abs() + element.fr.x().abs();
+                residual.load = residual.load + contact.size(&motion, cd, h) + element.fr.x().abs();
                 let mut stamp = contact.stamp(element);
                 if step {
                     (stamp.fe, stamp.fr) = (-work.states[spare].e, T::Vec2::default());
@@ -633,6 +746,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     #[inline(never)]
     fn statics(&mut self, scale: T, shear: T, store: bool) -> Result<(Residual<T>, T), Halt> {
         let Context { model, ref onto, .. } = *self.context;
+        let scale = self.scaling(scale);
         let mut residual = Residual::none();
         let mut rest = T::zero();
         let (mut force, mut moment) = (Sum::<T>::default(), Sum::<T>::default());
@@ -640,7 +754,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         let mut node = self.node;
         for (i, Place { element, work }) in self.places.iter_mut().enumerate() {
             let h = element.h;
-            let (contact, motion) = linearise(model, element, work, &node, current, onto, scale)
+            let (contact, motion) = linearise(model, element, work, &node, current, onto, scale(i))
                 .map_err(|fault| Halt::Law(i, fault))?;
             let (ce, cd) = contact.force(&motion, h);
             let held = element.deforming_force(motion.e) + ce;
@@ -650,7 +764,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             let gap = T::Vec2::of(force.plus(held.x()), moment.plus(held.y()));
             residual.see(gap, held, h);
             rest = gap.y() - h * gap.x();
-            residual.load = residual.load + cd.x().abs() + element.fr.x().abs();
+            residual.load = residual.load + contact.size(&motion, cd, h) + element.fr.x().abs();
             let carried = cd - element.fr;
             moment.add(-(h * force.value()));
             moment.add(carried.y());
@@ -786,3 +900,12 @@ const POLISHINGS: usize = 6;
 
 /// Rounds without halving the residual after which an iteration counts as stalled.
 const PATIENCE: usize = 40;
+
+/// Rounds without halving a residual at its floor after which it counts as the floor.
+const FLOOR_STEPS: usize = 6;
+
+/// Full steps taken without halving the residual before they are cut to descend.
+const FULL_STEPS: usize = 12;
+
+/// Cuts of one step: each takes a tenth off its bracket at least, the first ones nine tenths.
+const CUTS: usize = 60;
