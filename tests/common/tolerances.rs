@@ -67,8 +67,6 @@ pub const ROUNDING: f64 = 2e-12;
 
 /// Largest equilibrium error of random scenes: forces and reactions cancel to rounding times 1/h's conditioning.
 pub const RANDOM_EQUILIBRIUM: f64 = 1e-8;
-/// The same where the foundation is all but rigid: its force is k times the rounding of a penetration.
-pub const RANDOM_EQUILIBRIUM_RIGID: f64 = 1e-4;
 /// How much the integral of the squared penetration may grow with k relatively: discretisation of two scenes.
 pub const MONOTONE_IN_K: f64 = 1e-3;
 /// An integral of the squared penetration below this is none: the square of what rounding leaves of a gap.
