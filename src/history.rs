@@ -96,7 +96,7 @@ impl<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized> History<'s, T, M, S> {
                 for place in places[..elements].iter_mut() {
                     *place = Place { element: place.element, ..Place::default() };
                 }
-                let levels = nested::coarsen(places, elements);
+                let levels = nested::coarsen(scene, places, elements);
                 let mut answer = nested::solve(scene, places, &levels, settings)?;
                 answer.report.element_visits += wasted;
                 answer

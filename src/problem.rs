@@ -82,7 +82,7 @@ impl<'a, T: Real, M: Model<T>> Problem<'a, T, M> {
             }
             Ok(())
         })?;
-        let levels = nested::coarsen(places, elements);
+        let levels = nested::coarsen(&self.scene, places, elements);
         Ok(Prepared { scene: &self.scene, places, levels })
     }
 

@@ -9,7 +9,7 @@ use crate::certificate::{self, Uniqueness, Warning};
 use crate::cubic::Cubic;
 use crate::electric::{self, Ratio};
 use crate::element::Element;
-use crate::element::contact::{Contact, parts};
+use crate::element::contact::{Contact, law_splits, parts};
 use crate::element::hermite::Motion;
 use crate::element::linear::{Inverse, invert};
 use crate::law::{Compliance, truncate, truncate_positive};
@@ -272,7 +272,7 @@ impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
         };
         let bounds = self.scene.conduction();
         let mut splits = ArrayVec::new();
-        splits.extend(eta.crossings(T::zero()));
+        splits.extend(law_splits::<T, M>(&eta));
         if M::Mu1::PRESENT || M::Mu2::PRESENT {
             splits.extend(eta.crossings(bounds.truncation));
             splits.extend(q.crossings(bounds.potential_truncation));

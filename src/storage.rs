@@ -1,7 +1,7 @@
 //! Memory for a solve: of a fixed size, where the caller puts it, or on the heap; never more than the caller gave.
 //!
 //! A mesh of N elements needs N places, and the coarser meshes that give a solve its start take what room
-//! is left: N / 3 places more are enough for all of them. Without them the solver works on the mesh asked
+//! is left: N / 3 places and some dozen more are enough for all of them. Without them the solver works on the mesh asked
 //! for alone and needs more iterations where the foundation is stiff.
 
 use crate::electric::Ratio;
@@ -243,7 +243,7 @@ impl<T: Real, M: Model<T>> Default for HeapWorkspace<T, M> {
 #[cfg(feature = "alloc")]
 impl<T: Real, M: Model<T>> Storage<T, M> for HeapWorkspace<T, M> {
     fn places(&mut self, elements: usize) -> &mut [Place<T, M>] {
-        let room = elements.saturating_add(elements / 3).saturating_add(8);
+        let room = elements.saturating_add(elements / 3).saturating_add(64);
         if self.places.len() < room {
             self.places.resize(room, Place::default());
         }

@@ -12,7 +12,7 @@ use crate::cubic::{Cubic, Side};
 use crate::law::{Compliance, truncate, truncate_positive};
 use crate::profile::{Piece, Profile};
 use crate::quadrature::{POINTS, gauss};
-use crate::real::{Real, Square};
+use crate::real::{Pair, Real, Square};
 use crate::scene::Model;
 use crate::sweep::Stamp;
 use crate::sweep::pair::{Bending, Symmetric};
@@ -97,7 +97,7 @@ pub(crate) struct Contact<T> {
     offset: [T; 4],
 }
 
-/// At most three crossings each of eta = 0, eta = M, q = M, q = -M, and the two ends.
+/// At most three crossings each of eta = 0, eta = M, q = M, q = -M, and two turning points.
 pub(crate) type Splits<T> = ArrayVec<T, 14>;
 
 impl<T: Real> Contact<T> {
@@ -169,7 +169,7 @@ impl<T: Real> Contact<T> {
         let bounds = model.conduction();
         let (most, most_q) = (bounds.truncation, bounds.potential_truncation);
         let mut splits = Splits::new();
-        splits.extend(eta.crossings(T::zero()));
+        splits.extend(law_splits::<T, M>(eta));
         if conducts {
             splits.extend(eta.crossings(most));
             splits.extend(q.crossings(most_q));
@@ -268,6 +268,18 @@ impl<T: Real> Contact<T> {
         (ee, er, rr)
     }
 
+    /// The size of what cancels in the contact force `cd`: where the element is in contact in part, a stiff
+    /// foundation sees the rounding of all of its penetration.
+    #[inline(always)]
+    pub(crate) fn size(&self, motion: &Motion<T>, cd: T::Vec2, h: T) -> T {
+        if self.touch == Touch::Mixed {
+            let terms = self.stiffness.iter().zip(motion.cubic().0);
+            h * terms.fold(T::zero(), |sum, (moment, c)| sum + *moment * c.abs())
+        } else {
+            cd.x().abs()
+        }
+    }
+
     /// Contact force on (e, d) at the state it was linearised at.
     #[inline(always)]
     pub(crate) fn force(&self, motion: &Motion<T>, h: T) -> (T::Vec2, T::Vec2) {
@@ -279,6 +291,19 @@ impl<T: Real> Contact<T> {
         let (e, d) = (motion.e, motion.d);
         (ee.times(e) + er * d - oe, er.turned() * e + rr.times(d) - or)
     }
+}
+
+/// Where the integral of the pressure is split: where the penetration crosses zero, and for a curved law where
+/// it turns. There two crossings are born and die, and as such a law is not integrated exactly, its force
+/// would jump with the number of parts.
+#[inline(always)]
+pub(crate) fn law_splits<T: Real, M: Model<T>>(eta: &Cubic<T>) -> ArrayVec<T, 5> {
+    let mut splits = ArrayVec::new();
+    splits.extend(eta.crossings(T::zero()));
+    if !M::Law::LINEAR {
+        splits.extend(eta.turning_points());
+    }
+    splits
 }
 
 /// The intervals between the ends of [0, 1] and the splits, which are sorted on the way.

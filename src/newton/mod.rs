@@ -28,8 +28,9 @@
 //! *Only what changed.* Both ends are condensed towards a meeting point among the elements whose matrices
 //! changed; the parts outside them stay as they are. Convergence is decided on all elements.
 //!
-//! *Descent.* Without the potential's action on bending the state is the minimum of a convex energy. A full step
-//! that made the residual grow is cut to where the energy is least along it ([`Level::shorten`]).
+//! *Descent.* Without the potential's action on bending the state is the minimum of a convex energy. Where full
+//! steps do not halve the residual, increments are cut to where the energy is least along them
+//! ([`Level::lower`]): this converges from anywhere.
 
 mod coupled;
 pub(crate) mod nested;
@@ -181,6 +182,8 @@ pub(crate) struct Level<'a, 'b, T: Real, M: Model<T>> {
     pub(crate) meeting: usize,
     /// The condensed parts are those of a state, not of an increment.
     pub(crate) fresh: bool,
+    /// Elements whose law the continuation in the stiffness scales.
+    scaled: Range<usize>,
 }
 
 /// What a sweep solves for.
@@ -202,10 +205,20 @@ pub(crate) enum Outcome {
     Stalled,
 }
 
+/// What became of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Cut {
+    Whole,
+    Shorter,
+    /// It lowers the energy by no more than rounding.
+    Nowhere,
+}
+
 impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     pub(crate) fn new(context: &'b Context<'a, T, M>, places: &'b mut [Place<T, M>]) -> Self {
         let meeting = (places.len() / 2).max(1);
-        Self { context, places, node: Node::default(), current: 0, best: None, meeting, fresh: false }
+        let scaled = 0..places.len();
+        Self { context, places, node: Node::default(), current: 0, best: None, meeting, fresh: false, scaled }
     }
 
     /// Is bending in a loop with the potential?
@@ -248,7 +261,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         self.best = None;
         let changed = if self.fresh { changed } else { 0..self.places.len() };
         let mut outcome = self.descend(changed, scale, stop, most, count);
-        if outcome == Ok(Outcome::Stalled) && self.is_tied() {
+        if outcome == Ok(Outcome::Stalled) && self.context.onto.is_some() {
             self.keep_best();
             outcome = self.descend_coupled(scale, stop, most, count);
         }
@@ -295,45 +308,32 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             if !changed.is_empty() {
                 let swept = self.extent(&changed);
                 count.spend(swept.len())?;
-                residual = self.condense(swept, scale, Solve::State)?;
+                let condensed = self.condense(swept, scale, Solve::State);
+                // There is a way back where a state was good before.
+                residual = if self.best.is_some() { self.tried(condensed)? } else { condensed? };
             }
             // Rounding may be all that is left without being known beforehand: a gap far above the beam's own
             // bending adds to it. A sweep that gains nothing then asks statics, too.
             let swept = residual.relative();
-            let done = swept <= stop.max(blur);
+            let done = swept <= stop.max(blur).max(residual.floor());
             let near = swept <= T::of(NEAR) && swept > T::of(0.5) * last;
             if done || near || rounds_since_best == IDLE {
                 // Nothing changed, or as little as a sweep can tell: ask statics, on all elements.
-                residual = self.check(scale, count)?;
+                residual = self.settle(scale, stop, count)?;
                 checked = true;
-                // As long as it helps: the sweeps are less exact than the increments that they give.
-                for _ in 0..POLISHINGS {
-                    let before = residual.relative();
-                    if before <= stop || !done && before > T::of(BLURRED).max(blur) {
-                        break;
-                    }
-                    self.best = Some((self.current, residual));
-                    residual = self.polish(scale, count)?;
-                    if residual.relative() > T::of(0.5) * before {
-                        break;
-                    }
-                }
-                if residual.relative() > stop {
-                    // The factors may be those of an increment: condense the state again.
-                    count.spend(self.places.len())?;
-                    self.condense(0..self.places.len(), scale, Solve::State)?;
-                }
             }
-            let before = self.best.map(|(_, best)| best.relative());
-            if self.convex() && before.is_some_and(|last| residual.relative() > last) {
-                // A full step that made things worse: go only as far as the energy falls.
-                if self.shorten(scale, count)? {
-                    count.spend(self.places.len())?;
-                    residual = self.condense(0..self.places.len(), scale, Solve::State)?;
-                    checked = false;
+            if self.convex() && (rounds_since_best >= FULL_STEPS || !residual.is_finite()) {
+                // Full steps do not help from here: down the energy from the best state, unless there are
+                // better ways to start.
+                if most < usize::MAX {
+                    return Ok(Outcome::Stalled);
                 }
-                // Less energy is better, whatever the residual says.
-                self.best = None;
+                self.keep_best();
+                match self.lower(T::of(0.5) * least, scale, stop, count)? {
+                    Some(lower) => residual = lower,
+                    None => return Ok(Outcome::Floor),
+                }
+                checked = true;
             }
             let relative = residual.relative();
             if self.best.is_none_or(|(_, best)| relative < best.relative()) {
@@ -346,10 +346,10 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             rounds_since_best = if halved { 0 } else { rounds_since_best + 1 };
             least = least.min(relative);
             // At the floor no progress can be expected; above it, patience ends.
-            if least <= T::of(4.0) * residual.floor() && rounds_since_best >= 2 {
+            if least <= T::of(4.0) * residual.floor() && rounds_since_best >= FLOOR_STEPS {
                 return Ok(Outcome::Floor);
             }
-            if rounds_since_best > PATIENCE {
+            if rounds_since_best >= FULL_STEPS && !self.convex() {
                 return Ok(Outcome::Stalled);
             }
             slow += usize::from(relative > T::of(0.1) * last);
@@ -367,74 +367,187 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         Ok(Outcome::Stalled)
     }
 
+    /// From the current state, steps that lower the energy, each cut to where it is least, until the
+    /// residual is at most `enough`; `None` where they lower it by no more than rounding.
+    ///
+    /// The steps are increments: a sweep for the whole state has rounding in it that may be more than what is
+    /// left to go.
+    pub(crate) fn lower(
+        &mut self,
+        enough: T,
+        scale: T,
+        stop: T,
+        count: &mut Count,
+    ) -> Result<Option<Residual<T>>, Halt> {
+        let mut residual = self.check(scale, count)?;
+        while residual.relative() > enough.max(stop) {
+            self.best = Some((self.current, residual));
+            let polished = self.polish(scale, count);
+            residual = self.tried(polished)?;
+            if residual.relative() <= enough {
+                break;
+            }
+            match self.shorten(scale, count)? {
+                Cut::Whole => {}
+                Cut::Shorter => residual = self.check(scale, count)?,
+                // No energy can judge this step; the residual still can.
+                Cut::Nowhere if self.best.is_some_and(|(_, best)| residual.relative() < best.relative()) => {}
+                Cut::Nowhere => return Ok(None),
+            }
+        }
+        if residual.relative() > stop {
+            // The factors are those of an increment: condense the state itself.
+            count.spend(self.places.len())?;
+            self.condense(0..self.places.len(), scale, Solve::State)?;
+        }
+        self.best = Some((self.current, residual));
+        Ok(Some(residual))
+    }
+
+    /// The residual of the current state by statics; where that is above `stop`, increments take rounding
+    /// out as long as it helps: the sweeps are less exact than the increments that they give.
+    fn settle(&mut self, scale: T, stop: T, count: &mut Count) -> Result<Residual<T>, Halt> {
+        let checked = self.check(scale, count);
+        let mut residual = if self.best.is_some() { self.tried(checked)? } else { checked? };
+        for _ in 0..POLISHINGS {
+            let before = residual.relative();
+            if before <= stop {
+                break;
+            }
+            self.best = Some((self.current, residual));
+            let polished = self.polish(scale, count);
+            residual = self.tried(polished)?;
+            if residual.relative() > T::of(0.5) * before {
+                break;
+            }
+        }
+        if residual.relative() > stop {
+            if let Some((_, best)) = self.best
+                && best.relative() <= residual.relative()
+            {
+                residual = best;
+                self.keep_best();
+            }
+            // The factors may be those of an increment: condense the state again.
+            count.spend(self.places.len())?;
+            self.condense(0..self.places.len(), scale, Solve::State)?;
+        }
+        Ok(residual)
+    }
+
+    /// The residual after a step that can be taken back or cut: boundless where the step left the numbers that
+    /// the law or the sweep can hold.
+    fn tried(&self, residual: Result<Residual<T>, Halt>) -> Result<Residual<T>, Halt> {
+        match residual {
+            Err(Halt::Law(_, Fault::NotFinite) | Halt::Breakdown(_)) if self.convex() => {
+                Ok(Residual { mismatch: T::infinity(), size: T::one(), ..Residual::none() })
+            }
+            residual => residual,
+        }
+    }
+
+    /// The scale of each element's law.
+    fn scaling(&self, scale: T) -> impl Fn(usize) -> T + use<T, M> {
+        let Range { start, end } = self.scaled;
+        move |i| if (start..end).contains(&i) { scale } else { T::one() }
+    }
+
     /// Is bending, with the potential as it is, the minimum of a convex energy?
-    fn convex(&self) -> bool {
+    pub(crate) fn convex(&self) -> bool {
         self.context.onto.is_none()
     }
 
-    /// After a step from the best state (the spare one) to the current one that did not reduce the residual:
-    /// moves the current state to where the energy is least in between, and says whether it did.
+    /// After a step from the best state (the spare one) to the current one: cuts it to where the energy is
+    /// least along it, unless the energy falls all the way.
     ///
     /// The energy is convex and the step a direction of descent, so its derivative along the step rises
-    /// through zero; the root is bracketed and found to a tenth by the Illinois method, with bisections.
-    fn shorten(&mut self, scale: T, count: &mut Count) -> Result<bool, Halt> {
+    /// through zero; the root is bracketed by false positions, kept off the bracket's ends, and the step ends
+    /// below it, where at most half of the derivative is left.
+    fn shorten(&mut self, scale: T, count: &mut Count) -> Result<Cut, Halt> {
         let spare = 1 - self.current;
         if self.best.is_none_or(|(best, _)| best != spare) {
-            return Ok(false);
+            return Ok(Cut::Whole);
         }
-        let (zero, one) = (T::zero(), T::one());
-        let start = self.derivative(zero, scale, count)?;
-        let end = self.derivative(one, scale, count)?;
-        let small = T::of(0.1) * start.abs();
-        if !(start < zero && end > small) {
-            return Ok(false);
+        let (zero, one, tenth) = (T::zero(), T::one(), T::of(0.1));
+        let mut fault = None;
+        let (end, _) = self.derivative(one, scale, count, &mut fault)?;
+        if end <= zero {
+            return Ok(Cut::Whole);
         }
+        let (start, rounding) = self.derivative(zero, scale, count, &mut fault)?;
+        if start >= -rounding {
+            return Ok(Cut::Nowhere);
+        }
+        let enough = T::of(-0.5) * start;
         let (mut low, mut high) = ((zero, start), (one, end));
-        let mut t = one;
-        for round in 0..40 {
-            let falsi = low.0 - low.1 * ((high.0 - low.0) / (high.1 - low.1));
-            let middle = T::of(0.5) * (low.0 + high.0);
-            t = if round % 3 == 2 || !(falsi > low.0 && falsi < high.0) { middle } else { falsi };
-            let slope = self.derivative(t, scale, count)?;
-            if slope.abs() <= small {
+        let mut slope = end;
+        for round in 0..CUTS {
+            if slope <= zero && slope >= -enough {
                 break;
             }
-            // Illinois: the end that stays is weighted less, so that it does not stay for good.
-            if slope < zero {
-                low = (t, slope);
-                high.1 = T::of(0.5) * high.1;
+            let width = high.0 - low.0;
+            // Steep laws make false positions creep, and infinite ones stand still: halve every other time.
+            let falsi = low.0 - low.1 * (width / (high.1 - low.1));
+            let bisect = round % 2 == 1 || !high.1.is_finite();
+            let t = if bisect {
+                low.0 + T::of(0.5) * width
             } else {
-                high = (t, slope);
-                low.1 = T::of(0.5) * low.1;
-            }
+                falsi.max(low.0 + tenth * width).min(high.0 - tenth * width)
+            };
+            slope = self.derivative(t, scale, count, &mut fault)?.0;
+            *(if slope <= zero { &mut low } else { &mut high }) = (t, slope);
         }
-        if t <= zero {
-            return Ok(false);
+        let t = low.0;
+        if t == zero {
+            // The energy falls nowhere, or only to where the law ends.
+            return fault.map_or(Ok(Cut::Nowhere), Err);
         }
         let current = self.current;
         for Place { work, .. } in self.places.iter_mut() {
             work.states[current] = work.states[spare].toward(work.states[current], t);
         }
-        Ok(true)
+        Ok(Cut::Shorter)
     }
 
     /// Derivative of the energy along the step from the spare state to the current one, at the share t of
-    /// it.
-    fn derivative(&self, t: T, scale: T, count: &mut Count) -> Result<T, Halt> {
+    /// it, and what rounding may make of it; infinite, with a `fault`, where the law is.
+    fn derivative(
+        &self,
+        t: T,
+        scale: T,
+        count: &mut Count,
+        fault: &mut Option<Halt>,
+    ) -> Result<(T, T), Halt> {
         count.spend(self.places.len())?;
         let model = self.context.model;
-        let mut sum = Sum::<T>::default();
+        let scale = self.scaling(scale);
+        let (mut sum, mut size) = (Sum::<T>::default(), T::zero());
         for (i, Place { element, work }) in self.places.iter().enumerate() {
             let (from, to) = (work.states[1 - self.current], work.states[self.current]);
             let State { e, d } = from.toward(to, t);
             let motion = Motion::new(element.h, e, d);
-            let contact = Contact::at(model, element, &motion, Cubic::default, scale)
-                .map_err(|fault| Halt::Law(i, fault))?;
+            let contact = match Contact::at(model, element, &motion, Cubic::default, scale(i)) {
+                Err(Fault::NotFinite) => {
+                    *fault = Some(Halt::Law(i, Fault::NotFinite));
+                    return Ok((T::infinity(), T::zero()));
+                }
+                contact => contact.map_err(|fault| Halt::Law(i, fault))?,
+            };
             let (ce, cd) = contact.force(&motion, element.h);
-            sum.add((element.deforming_force(e) + ce).times(to.e - from.e));
-            sum.add((cd - element.fr).times(to.d - from.d));
+            size = size + contact.size(&motion, cd, element.h) * (to.d - from.d).x().abs();
+            let held = element.deforming_force(e) + ce;
+            if i == 0 {
+                // What the step closes of compatibility at the clamp is no work of the beam's.
+                let left = (to.e - from.e) + Bending::carry(element.h, to.d - from.d);
+                sum.add(-held.times(left));
+            }
+            for part in [held.times(to.e - from.e), (cd - element.fr).times(to.d - from.d)] {
+                sum.add(part);
+                size = size + part.abs();
+            }
         }
-        Ok(sum.value())
+        let sum = sum.value();
+        Ok((if sum.is_finite() { sum } else { T::infinity() }, T::of(16.0) * T::epsilon() * size))
     }
 
     /// One step for an increment of the best state.
@@ -535,6 +648,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     #[inline(never)]
     fn condense(&mut self, swept: Range<usize>, scale: T, solve: Solve<T>) -> Result<Residual<T>, Halt> {
         let Context { model, ref onto, .. } = *self.context;
+        let scale = self.scaling(scale);
         let (mut left, mut right) = (self.context.left, self.context.right);
         if let Solve::Increment { open } = solve {
             (left.value, right.value) = (open, T::Vec2::default());
@@ -561,7 +675,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 };
                 let Place { element, work } = &mut self.places[i];
                 let h = element.h;
-                let (contact, motion) = linearise(model, element, work, &node, current, onto, scale)
+                let (contact, motion) = linearise(model, element, work, &node, current, onto, scale(i))
                     .map_err(|fault| Halt::Law(i, fault))?;
                 let (ce, cd) = contact.force(&motion, h);
                 let held = element.deforming_force(motion.e) + ce;
@@ -572,7 +686,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 } else {
                     residual.measure(held, h);
                 }
-                residual.load = residual.load + cd.x().abs() + element.fr.x().abs();
+                residual.load = residual.load + contact.size(&motion, cd, h) + element.fr.x().abs();
                 let mut stamp = contact.stamp(element);
                 if step {
                     (stamp.fe, stamp.fr) = (-work.load(spare), T::Vec2::default());
@@ -599,7 +713,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 }
                 let Place { element, work } = &mut self.places[i];
                 let h = element.h;
-                let (contact, motion) = linearise(model, element, work, &node, current, onto, scale)
+                let (contact, motion) = linearise(model, element, work, &node, current, onto, scale(i))
                     .map_err(|fault| Halt::Law(i, fault))?;
                 let (ce, cd) = contact.force(&motion, h);
                 let deforming = element.deforming_force(motion.e) + ce;
@@ -612,7 +726,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 } else {
                     residual.measure(held, -h);
                 }
-                residual.load = residual.load + cd.x().abs() + element.fr.x().abs();
+                residual.load = residual.load + contact.size(&motion, cd, h) + element.fr.x().abs();
                 let mut stamp = contact.stamp(element);
                 if step {
                     (stamp.fe, stamp.fr) = (-work.load(spare), T::Vec2::default());
@@ -669,6 +783,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     #[inline(never)]
     fn statics(&mut self, scale: T, shear: T, store: bool) -> Result<(Residual<T>, T), Halt> {
         let Context { model, ref onto, .. } = *self.context;
+        let scale = self.scaling(scale);
         let mut residual = Residual::none();
         let mut rest = T::zero();
         let (mut force, mut moment) = (Sum::<T>::default(), Sum::<T>::default());
@@ -676,7 +791,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         let mut node = self.node;
         for (i, Place { element, work }) in self.places.iter_mut().enumerate() {
             let h = element.h;
-            let (contact, motion) = linearise(model, element, work, &node, current, onto, scale)
+            let (contact, motion) = linearise(model, element, work, &node, current, onto, scale(i))
                 .map_err(|fault| Halt::Law(i, fault))?;
             let (ce, cd) = contact.force(&motion, h);
             let held = element.deforming_force(motion.e) + ce;
@@ -686,7 +801,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             let gap = T::Vec2::of(force.plus(held.x()), moment.plus(held.y()));
             residual.see(gap, held, h);
             rest = gap.y() - h * gap.x();
-            residual.load = residual.load + cd.x().abs() + element.fr.x().abs();
+            residual.load = residual.load + contact.size(&motion, cd, h) + element.fr.x().abs();
             let carried = cd - element.fr;
             moment.add(-(h * force.value()));
             moment.add(carried.y());
@@ -830,8 +945,11 @@ const SLOW: usize = 4;
 /// Rounds without halving the residual after which statics is asked whether more than rounding is left of it.
 const IDLE: usize = 8;
 
-/// Residual by statics above which more than rounding is left then.
-const BLURRED: f64 = 1e-4;
+/// Rounds without halving a residual at its floor after which it counts as the floor.
+const FLOOR_STEPS: usize = 6;
 
-/// Rounds without halving the residual after which an iteration counts as stalled.
-const PATIENCE: usize = 40;
+/// Full steps taken without halving the residual before they are cut to descend.
+const FULL_STEPS: usize = 12;
+
+/// Cuts of one step: every other one halves its bracket at least.
+const CUTS: usize = 100;

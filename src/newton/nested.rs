@@ -40,7 +40,16 @@ const SOFT: f64 = 1e5;
 pub(crate) type Levels = ArrayVec<(usize, usize), MOST_LEVELS>;
 
 /// Builds coarser meshes behind the finest one, which takes the first `elements` places.
-pub(crate) fn coarsen<T: Real, M: Model<T>>(places: &mut [Place<T, M>], elements: usize) -> Levels {
+///
+/// At a clamp that is `pressed` into the foundation all meshes are as fine as the finest, and grow coarse
+/// with the distance from it: the moment there goes with the smallest elements where they do not resolve its
+/// boundary layer, and decides how far off the beam lifts.
+pub(crate) fn coarsen<T: Real, M: Model<T>>(
+    model: &M,
+    places: &mut [Place<T, M>],
+    elements: usize,
+) -> Levels {
+    let pressed = pressed(model, &places[..elements]);
     let mut levels = Levels::new();
     levels.push((0, elements));
     while let Some(&(start, len)) = levels.last() {
@@ -53,9 +62,14 @@ pub(crate) fn coarsen<T: Real, M: Model<T>>(places: &mut [Place<T, M>], elements
         let mut made = 0;
         let mut from = 0;
         while from < len {
-            // Up to four neighbours, none beyond a break.
+            // Up to four neighbours, none beyond a break, and no more than lie between them and a pressed clamp.
             let mut to = from + 1;
-            while to < len && to - from < MERGED && !fine[to - 1].element.stop {
+            while to < len
+                && to - from < MERGED
+                && !fine[to - 1].element.stop
+                && !(pressed[0] && to - from >= from.max(1))
+                && !(pressed[1] && to - from >= (len - 1 - to).max(1))
+            {
                 to += 1;
             }
             let Some(place) = rest.get_mut(made) else { break };
@@ -95,6 +109,20 @@ fn prolong<T: Real, M: Model<T>>(fine: &mut [Place<T, M>], coarse: &[Place<T, M>
 pub(super) fn clamp<T: Real, M: Model<T>>(model: &M, x: T, mid: T) -> End<T, crate::sweep::pair::Bending> {
     let [s, slope, _] = model.foundation().gap.jet(x, mid);
     End { held: [true, true], value: -T::Vec2::of(s, slope), condensed: Condensed::default() }
+}
+
+/// Is the beam's left end, its right end pressed into the foundation before anything bends?
+fn pressed<T: Real, M: Model<T>>(model: &M, places: &[Place<T, M>]) -> [bool; 2] {
+    let (Some(first), Some(last)) = (places.first(), places.last()) else { return [false; 2] };
+    let (length, half) = (model.length(), T::of(0.5));
+    let pressed = |x: T, mid: T, inwards: T| {
+        let [s, slope, _] = model.foundation().gap.jet(x, mid);
+        s < T::zero() || (s == T::zero() && inwards * slope < T::zero())
+    };
+    [
+        pressed(T::zero(), half * first.element.h, T::one()),
+        pressed(length, length - half * last.element.h, -T::one()),
+    ]
 }
 
 /// How a solve ended, and where in memory its answer is.
@@ -206,12 +234,19 @@ pub(crate) fn solve<T: Real, M: Model<T>>(
             } else {
                 level.iterate(T::one(), stop, STAGE, &mut count)
             };
-            if rank == 0 && !coarsest && outcome == Ok(Outcome::Stalled) {
-                // The coarser meshes misled: start anew on this one.
-                for place in level.places.iter_mut() {
-                    place.work.states = [State::default(); 2];
-                }
-                outcome = level.begin(stop, true, &mut count);
+            if !coarsest && outcome == Ok(Outcome::Stalled) {
+                outcome = if level.convex() {
+                    // The contact's edges are known to a few elements: soften until its layers are as wide.
+                    level.climb_from(stop, rank == 0, &mut count)
+                } else if rank == 0 {
+                    // The coarser meshes misled: start anew on this one.
+                    for place in level.places.iter_mut() {
+                        place.work.states = [State::default(); 2];
+                    }
+                    level.begin(stop, true, &mut count)
+                } else {
+                    outcome
+                };
             }
             if rank == 0 && outcome == Ok(Outcome::Converged) {
                 outcome = level.refine(&mut count).map(|()| Outcome::Converged);
@@ -311,25 +346,74 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
 
     /// From nothing, for bending alone: the free beam, then a continuation in the stiffness as far as it is needed.
     fn cold(&mut self, stop: T, finest: bool, count: &mut Count) -> Result<Outcome, Halt> {
-        let rough = T::of(ROUGH);
         let changed = self.free(count)?;
         if !M::Law::PRESENT {
             return self.iterate_from(changed, T::one(), stop, STAGE, count);
         }
-        let stiffness = self.stiffness()?;
-        let length = self.context.model.length();
-        let bending = self
-            .places
-            .iter()
-            .fold(T::zero(), |m, p| m.max(p.element.bending.yy * p.element.h * T::of(0.25)));
-        let soft = T::of(SOFT) * (bending / length / length / length / length);
-        let mut scale = T::one().min(soft / stiffness);
-        // A stiffness beyond all bounds makes the first scale zero, or a number that is none.
-        scale = scale.max(T::min_positive_value());
+        let soft = T::of(SOFT) * self.bending() / self.context.model.length().powi(4);
+        let stiffness = self.stiffness();
+        if !M::Law::LINEAR && soft / stiffness <= T::epsilon() * T::epsilon() {
+            // The law is all but infinite under the free beam: from the straight one, steps that are cut.
+            self.straighten();
+            self.lower(T::of(ROUGH), T::one(), stop, count)?;
+            return self.iterate(T::one(), stop, usize::MAX, count);
+        }
+        // A stiffness beyond all bounds makes the first scale zero.
+        self.climb((soft / stiffness).max(T::min_positive_value()), stiffness, true, stop, finest, count)
+    }
+
+    /// From where a coarser mesh ended, and full steps did not help: a continuation that starts with layers
+    /// as wide as that mesh's elements.
+    fn climb_from(&mut self, stop: T, finest: bool, count: &mut Count) -> Result<Outcome, Halt> {
+        let stiffness = self.stiffness();
+        let widest = self.places.iter().fold(T::zero(), |m, p| m.max(p.element.h)) * T::of(MERGED as f64);
+        let scale = T::of(4.0) * self.bending() / stiffness / widest.powi(4);
+        self.climb(scale.max(T::min_positive_value()), stiffness, false, stop, finest, count)
+    }
+
+    /// The largest bending stiffness \[N m^2\].
+    fn bending(&self) -> T {
+        self.places.iter().fold(T::zero(), |m, p| m.max(p.element.bending.yy * p.element.h * T::of(0.25)))
+    }
+
+    /// The continuation in the stiffness, which is `stiffness` at most, from `scale` times it.
+    fn climb(
+        &mut self,
+        mut scale: T,
+        stiffness: T,
+        cold: bool,
+        stop: T,
+        finest: bool,
+        count: &mut Count,
+    ) -> Result<Outcome, Halt> {
+        let rough = T::of(ROUGH);
+        if scale < T::one() {
+            let n = self.places.len();
+            let length = self.context.model.length();
+            let layer = T::of(4.0) * (T::of(4.0) * self.bending() / stiffness).sqrt().sqrt();
+            let pressed = pressed(self.context.model, self.places);
+            if pressed[0] {
+                self.scaled.start =
+                    self.places.iter().position(|p| p.element.right > layer).unwrap_or(n - 1) + 1;
+            }
+            if pressed[1] {
+                self.scaled.end = self
+                    .places
+                    .iter()
+                    .position(|p| p.element.right >= length - layer)
+                    .unwrap_or(n - 1)
+                    .max(self.scaled.start);
+            }
+            if cold && self.scaled != (0..n) {
+                self.iterate(T::zero(), rough, 4 * STAGE, count)?;
+            }
+        }
+        // A convex stage that stalls ends by itself.
+        let stage = if self.convex() { 4 * STAGE } else { STAGE };
         let mut stride = T::of(STRIDE);
         let mut reached = T::zero();
         while scale < T::one() {
-            if self.iterate(scale, rough, STAGE, count)? == Outcome::Stalled {
+            if self.iterate(scale, rough, stage, count)? == Outcome::Stalled {
                 // Too far: half the way in the exponent, from where the failed stage ended.
                 if stride <= T::of(SHORTEST) || reached == T::zero() {
                     break;
@@ -341,28 +425,40 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
             }
             scale = reached * stride;
         }
-        let most = if finest { 4 * STAGE } else { STAGE };
+        let most = match (finest, self.convex()) {
+            (true, true) => usize::MAX,
+            (true, false) => 4 * STAGE,
+            _ => STAGE,
+        };
         self.iterate(T::one(), stop, most, count)
     }
 
-    /// The largest tangent stiffness of the law under the current penetration \[N/m^2\].
-    fn stiffness(&self) -> Result<T, Halt> {
+    /// The beam without any deflection.
+    fn straighten(&mut self) {
+        let gap = self.context.model.foundation().gap;
+        for Place { element, work } in self.places.iter_mut() {
+            let [s, slope, _] = gap.jet(element.right, element.x(T::of(0.5)));
+            let straight = State { e: -element.gap.bend::<T>(), d: -T::Vec2::of(s, slope) };
+            work.states[self.current] = straight;
+        }
+    }
+
+    /// The largest tangent stiffness of the law under the current penetration \[N/m^2\]; infinite where it is
+    /// no number.
+    fn stiffness(&self) -> T {
         let law = self.context.model.foundation().law;
         let mut most = T::zero();
-        for (i, Place { element, work }) in self.places.iter().enumerate() {
+        for Place { element, work } in self.places.iter() {
             let State { e, d } = work.states[self.current];
             let eta = Motion::new(element.h, e, d).cubic();
             for t in [0.0, 0.25, 0.5, 0.75, 1.0].map(T::of) {
                 let r = eta.at(t);
                 if r > T::zero() {
                     let (_, slope) = law.pressure(element.law.at(t), element.x(t), r);
-                    if slope.is_nan() {
-                        return Err(Halt::Law(i, crate::element::contact::Fault::NotFinite));
-                    }
-                    most = most.max(slope);
+                    most = if slope.is_finite() { most.max(slope) } else { T::infinity() };
                 }
             }
         }
-        Ok(most)
+        most
     }
 }

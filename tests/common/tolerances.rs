@@ -91,3 +91,11 @@ pub const POINT: f64 = 1e-10;
 pub const FLOOR: f64 = 1e-12;
 /// Fifty breaks within 5e-13 of the length against a single one: the load between them is 3 off at most.
 pub const CROWD: f64 = 1e-11;
+/// Element visits of scenes made hard: so many per element and so many beside.
+pub const HARD_VISITS: (usize, usize) = (400, 100_000);
+/// A residual that counts as the floor, over the floor that is estimated.
+pub const FLOORS: f64 = 8.0;
+/// k L^4 / C below which rounding never keeps a residual above 1e-10 on any mesh of the tests.
+pub const RESOLVABLE: f64 = 1e8;
+/// Residual that rounding may leave of a foundation that is all but rigid, on coarse meshes.
+pub const RIGID_FLOOR: f64 = 1e-4;
