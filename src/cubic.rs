@@ -104,7 +104,7 @@ impl<T: Real> Cubic<T> {
     }
 
     /// Zeros of the derivative inside (0, 1), ascending.
-    fn turning_points(&self) -> ArrayVec<T, 2> {
+    pub(crate) fn turning_points(&self) -> ArrayVec<T, 2> {
         let [_, c1, c2, c3] = self.0;
         // c1 + 2 c2 t + 3 c3 t^2 = 0, scaled so that the discriminant neither over- nor underflows.
         let size = c1.abs().max(c2.abs()).max(c3.abs());

@@ -107,6 +107,7 @@ mod profile;
 mod quadrature;
 mod real;
 mod scene;
+mod sensitivity;
 mod solution;
 mod storage;
 mod sweep;
@@ -124,6 +125,7 @@ pub use scene::{
     Beam, BeamPart, Conduction, ConductionPart, Foundation, FoundationPart, Load, LoadPart, Model, PointLoad,
     Points, Potential, PotentialPart, Scene,
 };
+pub use sensitivity::{Adjoint, Grazing, Output, Parameter, SensitivityError, Tangent};
 pub use solution::{Fields, Resultants, Solution};
 #[cfg(feature = "alloc")]
 pub use storage::HeapWorkspace;

@@ -105,6 +105,13 @@ pub(crate) struct Answer<T: Real, M: Model<T>> {
     pub(crate) left: Node<T, M>,
 }
 
+impl<T: Real, M: Model<T>> Clone for Answer<T, M> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<T: Real, M: Model<T>> Copy for Answer<T, M> {}
+
 /// Solves the scene that was laid into `places`.
 pub(crate) fn solve<T: Real, M: Model<T>>(
     model: &M,
