@@ -407,7 +407,11 @@ impl<'a, 's, T: Real, M: Model<T>> Rate<'a, 's, T, M> {
             Output::ContactForce => h * self.moments(|t| self.forces(t)[0])[0],
             Output::LeftForce => self.residual().0.x(),
             Output::LeftMoment => -self.residual().0.y(),
-            Output::RightForce => -self.statics(self.residual().0, zero).1,
+            Output::RightForce => {
+                // A force on the clamp itself goes into it.
+                let direct = if self.force == Some(zero) { T::one() } else { zero };
+                -(self.statics(self.residual().0, zero).1 + direct)
+            }
             Output::RightMoment => self.statics(self.residual().0, zero).0,
         }
     }
