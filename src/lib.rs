@@ -32,6 +32,11 @@
 //! A solve is [`Status::Converged`] only if the moment that the deformation gives and the one that statics
 //! gives agree, on all elements.
 //!
+//! # Derivatives
+//!
+//! One more sweep at a converged solution gives a [`Tangent`]: the derivatives of all fields to one
+//! [`Parameter`]; or an [`Adjoint`]: those of one [`Output`] to all parameters, and its influence line.
+//!
 //! # An example
 //!
 //! A beam that a load presses onto a foundation on its left half and lifts on its right half; no allocator:

@@ -4,7 +4,8 @@
 //! solution, loaded by minus the derivative of the residual to the parameter. A [`Tangent`] is that solution,
 //! from one sweep: how *all* fields and outputs change with *one* parameter. An [`Adjoint`] solves the transposed
 //! system for the weights of one output: how *one* output changes with *all* parameters, and with a transverse
-//! force anywhere, its influence line. Both are exact derivatives of the discrete solution, not differences.
+//! force anywhere, its influence line. Both are exact derivatives of the discrete solution, not differences, but for
+//! quadrature next to a contact edge where the law is no polynomial there.
 //!
 //! ```
 //! use piezobeam::{Beam, Load, Mesh, Output, Parameter, Problem, Scene, Settings};
