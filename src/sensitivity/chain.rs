@@ -120,9 +120,11 @@ impl<T: Real, M: Model<T>> System<'_, T, M> {
             if !(onto && into) || change == T::zero() {
                 return Ok(());
             }
-            // Down to rounding, where changes stop to fall.
-            let small = T::of(1024.0) * T::epsilon();
-            if round > 0 && change <= small && change >= T::of(0.5) * last {
+            // What is left is about change^2 / last; at rounding changes stop to fall. The first change is from
+            // nothing.
+            let settled = round > 1 && change * change <= T::of(0.125) * T::epsilon() * last;
+            let small = round > 0 && change <= T::of(1024.0) * T::epsilon();
+            if settled || (small && change >= T::of(0.5) * last) {
                 return Ok(());
             }
             last = change;

@@ -311,9 +311,9 @@ mod tests {
             &text,
             &[
                 "derivative of bending contact force",
-                "to at 500 mm",
+                "to at 0.5 m",
                 "beam.bending 62.4 mm -1.234 kN",
-                "load.points.force at 300 mm -1.25 µm/N 0.5 N/N",
+                "load.points.force at 0.3 m -1.25 µm/N 0.5 N/N",
             ],
         );
         assert!(text.ends_with("\nwhat a number means\nwarning: the beam only touches\n"), "{text}");
