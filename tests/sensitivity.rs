@@ -183,19 +183,23 @@ fn prepared<M: Model<f64>, R>(
     look(&mut prepared)
 }
 
-/// Derivatives of `outputs` by differences of order four: f(1 step), f(2 steps) on both sides.
+/// Derivatives of `outputs` by differences of order four, from one and two steps on both sides, and what order two
+/// is off by.
 fn differences(
     scene: &Loaded,
     n: usize,
     parameter: Parameter<f64>,
     step: f64,
     outputs: &[Output<f64>],
-) -> Option<Vec<f64>> {
+) -> Option<(Vec<f64>, Vec<f64>)> {
     let at = |share: f64| values(&moved(scene, parameter, share * step).0, n, outputs);
     let by = moved(scene, parameter, step).1;
     let (one, minus_one, two, minus_two) = (at(1.0)?, at(-1.0)?, at(2.0)?, at(-2.0)?);
-    let difference = |i: usize| (8.0 * (one[i] - minus_one[i]) - (two[i] - minus_two[i])) / (12.0 * by);
-    Some((0..outputs.len()).map(difference).collect())
+    let narrow = |i: usize| (one[i] - minus_one[i]) / (2.0 * by);
+    let wide = |i: usize| (two[i] - minus_two[i]) / (4.0 * by);
+    let all = 0..outputs.len();
+    let best = all.clone().map(|i| (4.0 * narrow(i) - wide(i)) / 3.0).collect();
+    Some((best, all.map(|i| (narrow(i) - wide(i)).abs() / 3.0).collect()))
 }
 
 /// The unit in which an output's derivatives are compared: outputs of one kind have one.
@@ -248,21 +252,27 @@ fn levels(scene: &Loaded, outputs: &[Output<f64>], values: &[f64]) -> Vec<f64> {
 }
 
 /// Complaints about tangents that are not differences of solves.
-fn against_differences(name: &str, scene: &Loaded, n: usize, tolerance: f64) -> Option<Vec<String>> {
+fn against_differences(
+    name: &str,
+    scene: &Loaded,
+    n: usize,
+    step: f64,
+    tolerance: f64,
+) -> Option<Vec<String>> {
     let outputs = outputs(scene.length);
     let mut complaints = Vec::new();
     let levels = levels(scene, &outputs, &values(scene, n, &outputs)?);
     prepared(scene, Mesh::uniform(n), &Settings::default(), |beam| {
         for parameter in PARAMETERS {
             let tangent = beam.tangent(parameter).unwrap_or_else(|e| panic!("{name} {parameter:?}: {e}"));
-            let step = 1e-3;
-            let want = differences(scene, n, parameter, step, &outputs)?;
+            let (want, doubt) = differences(scene, n, parameter, step, &outputs)?;
             let by = moved(scene, parameter, step).1.abs();
-            for (((&output, want), size), level) in
-                outputs.iter().zip(&want).zip(sizes(&outputs, &want)).zip(&levels)
-            {
+            let (sizes, doubts) = (sizes(&outputs, &want), sizes(&outputs, &doubt));
+            for (i, (&output, want)) in outputs.iter().zip(&want).enumerate() {
                 let got = tangent.of(output).expect("an output of the scene");
-                let allowed = tolerance * size + tol::DIFFERENCE * level / by;
+                // Next to a touch solves are not smooth enough for order four, which order two shows.
+                let own = if tolerance == tol::DERIVATIVE_RANDOM { doubts[i] } else { 0.0 };
+                let allowed = tolerance * sizes[i] + tol::DIFFERENCE * levels[i] / by + own;
                 if got.is_nan() || (got - want).abs() > allowed {
                     complaints.push(format!("{name}: d {output:?} / d {parameter:?} = {got:e}, differences {want:e} +- {allowed:.0e}"));
                 }
@@ -287,7 +297,8 @@ fn tangents_are_differences_of_solves_on_the_suite() {
             let tolerance = if case.name == "hertz" { tol::DERIVATIVE_HERTZ } else { tol::DERIVATIVE };
             let scene = conducting(&loaded(&case.scene), shares);
             let name = format!("{} {shares:?}", case.name);
-            complaints.extend(against_differences(&name, &scene, SAMPLES, tolerance).expect("solutions"));
+            complaints
+                .extend(against_differences(&name, &scene, SAMPLES, 1e-3, tolerance).expect("solutions"));
         }
     }
     settle(&complaints);
@@ -418,10 +429,15 @@ proptest! {
             report.status == Status::Converged && beam.grazing() == Ok(None)
         };
         prop_assume!(scene.load.points[0].force.abs() > 0.1 && converged(&scene));
-        let complaints = against_differences("random", &scene, 96, tol::DERIVATIVE_RANDOM);
-        prop_assume!(complaints.is_some());
-        let complaints = complaints.unwrap_or_default();
-        prop_assert!(complaints.is_empty(), "\n{}", complaints.join("\n"));
+        let complaints = |step| against_differences("random", &scene, 96, step, tol::DERIVATIVE_RANDOM);
+        let wide = complaints(1e-3);
+        prop_assume!(wide.is_some());
+        let mut left = wide.unwrap_or_default();
+        if !left.is_empty() {
+            // A kink within the step: it is none for a smaller one.
+            left = complaints(3e-6).unwrap_or_default();
+        }
+        prop_assert!(left.is_empty(), "\n{}", left.join("\n"));
     }
 
     #[test]
@@ -436,7 +452,7 @@ proptest! {
         beam.solve(&Settings::default()).expect("settings in range");
         prop_assume!(beam.last().is_some_and(|s| s.report().status == Status::Converged));
         let nodes: Vec<f64> = beam.last().map_or(vec![], |s| s.nodes().collect());
-        let at = |share: f64| nodes[(share * nodes.len() as f64) as usize];
+        let at = |share: f64| nodes[1 + (share * (nodes.len() - 2) as f64) as usize];
         let (x, y) = (at(x), at(y));
         let line = |beam: &mut Prepared<'_, f64, _>, to: f64, of: f64| {
             beam.adjoint(Output::Bending(to)).expect("a derivative").influence(of)
