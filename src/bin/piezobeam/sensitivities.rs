@@ -33,7 +33,6 @@ fn fill<T: Real, M: Model<T>>(
     found.warning = prepared.grazing()?.map(|grazing| warning(&grazing));
     let solution = prepared.last().ok_or(SensitivityError::Unsolved)?;
     let (parameters, outputs) = (parameters(solution.scene()), outputs(&solution));
-    drop(solution);
     let rows: Vec<_> = outputs.iter().map(|&(output, ..)| output).collect();
     let columns: Vec<_> = parameters.iter().map(|&(parameter, ..)| parameter).collect();
     let mut values = vec![T::zero(); rows.len() * columns.len()];
