@@ -73,16 +73,16 @@ impl<T: Real> Ratio<T> {
 
 /// Integrals from the left end of what multiplies tau and D in u' and q'.
 #[derive(Clone, Copy, Default)]
-struct Reach<T, const EXACT: bool> {
-    uu: Sum<T, EXACT>,
-    z: Sum<T, EXACT>,
-    uq: Sum<T, EXACT>,
-    qq: Sum<T, EXACT>,
+pub(crate) struct Reach<T, const EXACT: bool> {
+    pub(crate) uu: Sum<T, EXACT>,
+    pub(crate) z: Sum<T, EXACT>,
+    pub(crate) uq: Sum<T, EXACT>,
+    pub(crate) qq: Sum<T, EXACT>,
 }
 
 impl<T: Real, const EXACT: bool> Reach<T, EXACT> {
     #[inline(always)]
-    fn extend<M: Model<T>>(&mut self, h: T, flexibility: &Flexibility<T, M>, ratio: &Ratio<T>) {
+    pub(crate) fn extend<M: Model<T>>(&mut self, h: T, flexibility: &Flexibility<T, M>, ratio: &Ratio<T>) {
         let mean = flexibility.mean();
         if M::Axial::PRESENT {
             self.uu.add(h * mean.uu);

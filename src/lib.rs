@@ -34,6 +34,11 @@
 //! A solve is [`Status::Converged`] only if the moment that the deformation gives and the one that statics
 //! gives agree, on all elements.
 //!
+//! # Derivatives
+//!
+//! One more sweep at a converged solution gives a [`Tangent`]: the derivatives of all fields to one
+//! [`Parameter`]; or an [`Adjoint`]: those of one [`Output`] to all parameters, and its influence line.
+//!
 //! # An example
 //!
 //! A beam that a load presses onto a foundation on its left half and lifts on its right half; no allocator:
@@ -109,6 +114,7 @@ mod profile;
 mod quadrature;
 mod real;
 mod scene;
+mod sensitivity;
 mod solution;
 mod storage;
 mod sweep;
@@ -129,6 +135,7 @@ pub use scene::{
     Beam, BeamPart, Conduction, ConductionPart, Foundation, FoundationPart, Load, LoadPart, Model, PointLoad,
     Points, Potential, PotentialPart, Scene,
 };
+pub use sensitivity::{Adjoint, Grazing, Output, Parameter, SensitivityError, Tangent};
 pub use solution::{Fields, Resultants, Solution};
 #[cfg(feature = "alloc")]
 pub use storage::HeapWorkspace;

@@ -83,7 +83,7 @@ impl<'a, T: Real, M: Model<T>> Problem<'a, T, M> {
             Ok(())
         })?;
         let levels = nested::coarsen(&self.scene, places, elements);
-        Ok(Prepared { scene: &self.scene, places, levels })
+        Ok(Prepared { scene: &self.scene, places, levels, answer: None })
     }
 
     /// [`Problem::prepare`] and [`Prepared::solve`] in one.
@@ -102,9 +102,11 @@ impl<'a, T: Real, M: Model<T>> Problem<'a, T, M> {
 
 /// A scene laid into memory, ready to be solved, again and again.
 pub struct Prepared<'s, T: Real, M: Model<T>> {
-    scene: &'s M,
-    places: &'s mut [Place<T, M>],
+    pub(crate) scene: &'s M,
+    pub(crate) places: &'s mut [Place<T, M>],
     levels: Levels,
+    /// Where the last solve left its answer.
+    pub(crate) answer: Option<Answer<T, M>>,
 }
 
 impl<'s, T: Real, M: Model<T>> Prepared<'s, T, M> {
@@ -142,6 +144,9 @@ impl<'s, T: Real, M: Model<T>> Prepared<'s, T, M> {
     }
 
     fn run(&mut self, settings: &Settings<T>) -> Result<Answer<T, M>, Error> {
-        nested::solve(self.scene, self.places, &self.levels, settings)
+        self.answer = None;
+        let answer = nested::solve(self.scene, self.places, &self.levels, settings)?;
+        self.answer = Some(answer);
+        Ok(answer)
     }
 }

@@ -74,28 +74,28 @@ pub struct Resultants<T> {
 
 /// A solved scene.
 pub struct Solution<'s, T: Real, M: Model<T>> {
-    scene: &'s M,
-    places: &'s [Place<T, M>],
+    pub(crate) scene: &'s M,
+    pub(crate) places: &'s [Place<T, M>],
     report: Report<T>,
-    state: usize,
-    left: Node<T, M>,
+    pub(crate) state: usize,
+    pub(crate) left: Node<T, M>,
 }
 
 /// An element in its solved state.
-struct Solved<'s, T: Real, M: Model<T>> {
-    scene: &'s M,
-    element: &'s Element<T, M>,
-    motion: Motion<T>,
-    eta: Cubic<T>,
-    q: Cubic<T>,
-    left: &'s Node<T, M>,
-    right: &'s Node<T, M>,
-    mid: T,
-    ratio: Ratio<T>,
+pub(crate) struct Solved<'s, T: Real, M: Model<T>> {
+    pub(crate) scene: &'s M,
+    pub(crate) element: &'s Element<T, M>,
+    pub(crate) motion: Motion<T>,
+    pub(crate) eta: Cubic<T>,
+    pub(crate) q: Cubic<T>,
+    pub(crate) left: &'s Node<T, M>,
+    pub(crate) right: &'s Node<T, M>,
+    pub(crate) mid: T,
+    pub(crate) ratio: Ratio<T>,
     /// Force and moment at the left node: shear and minus the moment.
     held: T::Vec2,
     /// Kinks of the forces inside the element, in t.
-    splits: ArrayVec<T, 14>,
+    pub(crate) splits: ArrayVec<T, 14>,
 }
 
 impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
@@ -255,7 +255,7 @@ impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
         warnings
     }
 
-    fn solved(&self, i: usize) -> Solved<'_, T, M> {
+    pub(crate) fn solved(&self, i: usize) -> Solved<'_, T, M> {
         let Place { element, work } = &self.places[i];
         let left = match i.checked_sub(1) {
             Some(before) => &self.places[before].work.node,
@@ -294,11 +294,11 @@ impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
 
 impl<T: Real, M: Model<T>> Solved<'_, T, M> {
     /// Relative unknowns of xi itself.
-    fn bend(&self) -> T::Vec2 {
+    pub(crate) fn bend(&self) -> T::Vec2 {
         if M::Gap::PRESENT { self.motion.e + self.element.gap.bend::<T>() } else { self.motion.e }
     }
 
-    fn t(&self, x: T) -> T {
+    pub(crate) fn t(&self, x: T) -> T {
         ((self.element.right - x) / self.element.h).max(T::zero()).min(T::one())
     }
 
@@ -326,7 +326,7 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
     }
 
     /// Integral over t from `from` to `to` of g, part by part between the kinks.
-    fn between(&self, from: T, to: T, mut g: impl FnMut(T) -> T) -> T {
+    pub(crate) fn between(&self, from: T, to: T, mut g: impl FnMut(T) -> T) -> T {
         let mut splits = self.splits.clone();
         let mut sum = T::zero();
         for (a, b) in parts(&mut splits) {
@@ -350,7 +350,7 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
     }
 
     /// Moment and shear at t, from the left node by equilibrium.
-    fn statics(&self, t: T) -> (T, T) {
+    pub(crate) fn statics(&self, t: T) -> (T, T) {
         let h = self.element.h;
         let shear = self.held.x() + h * self.between(t, T::one(), |y| self.net(y));
         let lever = h * h * self.between(t, T::one(), |y| (y - t) * self.net(y));
@@ -397,7 +397,7 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
         }
     }
 
-    fn inverse(&self, x: T) -> Inverse<T> {
+    pub(crate) fn inverse(&self, x: T) -> Inverse<T> {
         let beam = self.scene.beam();
         invert::<T, M>(
             beam.axial.value(x, self.mid),
@@ -432,7 +432,7 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
     }
 
     /// u' and q' at t.
-    fn gradients(&self, t: T) -> (T, T) {
+    pub(crate) fn gradients(&self, t: T) -> (T, T) {
         let k = self.inverse(self.element.x(t));
         let (tau, displacement) = self.fluxes(t);
         self.ratio.gradients::<M>(&k, tau, displacement)

@@ -190,6 +190,59 @@ fn the_main_job_writes_eight_pictures() {
 }
 
 #[test]
+fn sensitivities_are_what_solves_of_changed_scenes_differ_by() {
+    let folder = folder();
+    let line = "solve halves.toml --elements 200 --stop 1e-13 --format json --samples 3";
+    let value = json(&folder, &format!("{line} --sensitivities"));
+    let found = &value["sensitivities"];
+    assert_eq!(found["error"], Value::Null);
+    assert_eq!(found["warning"], Value::Null);
+    let find = |list: &str, name: &str| {
+        let list = found[list].as_array().expect("a list");
+        list.iter().position(|entry| entry["name"] == name).expect("an entry")
+    };
+    let changed = |from: &str, to: &str| {
+        assert!(HALVES.contains(from), "{from}");
+        write(&folder, "changed.toml", &HALVES.replacen(from, to, 1));
+        json(&folder, &line.replace("halves", "changed"))
+    };
+    for (name, field, low, high) in [
+        ("foundation.stiffness", "stiffness = 1e8", "stiffness = 0.999e8", "stiffness = 1.001e8"),
+        ("beam.bending", "bending = 5000.0", "bending = 4995.0", "bending = 5005.0"),
+    ] {
+        let (low, high) = (changed(field, low), changed(field, high));
+        let at = find("parameters", name);
+        for (output, path) in [
+            ("contact force", "/contact/force"),
+            ("bending", "/samples/bending/1"),
+            ("left moment", "/resultants/left/moment"),
+            ("right force", "/resultants/right/force"),
+        ] {
+            let of = |value: &Value| value.pointer(path).and_then(Value::as_f64).expect("a number");
+            let want = (of(&high) - of(&low)) / 0.002;
+            let got =
+                found["outputs"][find("outputs", output)]["derivatives"][at].as_f64().expect("a number");
+            assert!((got - want).abs() < 1e-4 * want.abs(), "{output} {name}: {got} {want}");
+        }
+    }
+    assert_eq!(json(&folder, line)["sensitivities"], Value::Null);
+
+    let output = piezobeam(folder.path(), "solve halves.toml --sensitivities");
+    let said = text(&output.stdout);
+    assert!(said.contains("derivative of") && said.contains("foundation.stiffness"), "{said}");
+    assert!(said.contains("per relative change"), "{said}");
+    assert!(!said.contains("load.points") && !said.contains("foundation.gap"), "{said}");
+    assert!(refusal(&folder, "solve halves.toml --sensitivities --format csv").contains("csv"));
+
+    let output = piezobeam(folder.path(), "solve halves.toml --sensitivities --stop 1e-17");
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output.stdout).contains("no derivatives: "));
+    write(&folder, "rest.toml", "length = 1.0\n[beam]\nbending = 1.0\n[foundation]\nstiffness = 10.0\n");
+    let output = piezobeam(folder.path(), "solve rest.toml --sensitivities");
+    assert!(text(&output.stdout).contains("one sign at most"), "{}", text(&output.stdout));
+}
+
+#[test]
 fn time_and_check_say_what_they_promise() {
     let folder = folder();
     let value = json(&folder, "time halves.toml --elements 50 --repeat 3 --format json");

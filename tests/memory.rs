@@ -6,8 +6,8 @@ mod common;
 use allocation_counter::measure;
 use common::named;
 use piezobeam::{
-    Beam, Conduction, Foundation, HeapWorkspace, Linear, Load, Mesh, Model, PointLoad, Potential, Power,
-    Prepared, Problem, Report, Scene, Settings, Status, Steps, Storage, Workspace,
+    Beam, Conduction, Foundation, HeapWorkspace, Linear, Load, Mesh, Model, Output, Parameter, PointLoad,
+    Potential, Power, Prepared, Problem, Report, Scene, Settings, Status, Steps, Storage, Workspace,
 };
 
 /// Bytes per element of a scene of this type.
@@ -71,6 +71,30 @@ fn a_solve_that_fails_allocates_nothing() {
         let report = solve_counted(&mut prepared, &Settings { max_visits: most, ..Settings::default() });
         assert!(name == "stubborn" || report.status == Status::VisitLimit, "{report:?}");
     }
+}
+
+#[test]
+fn derivatives_allocate_nothing() {
+    let problem = Problem::new(full(), Mesh::uniform(100)).expect("a scene");
+    let mut memory = problem.workspace::<140>();
+    let mut prepared = problem.prepare(&mut memory).expect("room");
+    let report = prepared.solve(&Settings::default()).expect("settings in range");
+    assert_eq!(report.status, Status::Converged, "{report:?}");
+    let mut found = [0.0; 4];
+    let counted = measure(|| {
+        let (outputs, parameters) =
+            ([Output::Bending(0.5), Output::ContactForce], [Parameter::Gap, Parameter::PointMoment(0)]);
+        if prepared.derivatives(&outputs, &parameters, &mut found).is_err() {
+            return;
+        }
+        let Ok(adjoint) = prepared.adjoint(Output::Potential(0.3)) else { return };
+        found[3] = adjoint.influence(0.7) + adjoint.to(Parameter::Mu1).unwrap_or_default();
+        if prepared.grazing() != Ok(None) {
+            found = [0.0; 4];
+        }
+    });
+    assert_eq!(counted.count_total, 0);
+    assert!(found.iter().all(|&v| v != 0.0), "{found:?}");
 }
 
 #[test]

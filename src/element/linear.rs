@@ -106,6 +106,12 @@ impl<T: Real, M: Model<T>> Flexibility<T, M> {
         Inverse { uu: self.uu.at(t), uq: self.uq.at(t), qq: self.qq.at(t) }
     }
 
+    /// Integrals over [0, t] of what a current between there and the left node does to u and q.
+    #[inline(always)]
+    pub(crate) fn integral(&self, t: T) -> (T, T) {
+        (self.uq.integral(t), self.qq.integral(t))
+    }
+
     /// Means over the element.
     #[inline(always)]
     pub(crate) fn mean(&self) -> Inverse<T> {

@@ -901,7 +901,7 @@ fn potential<T: Real, M: Model<T>>(
 
 /// The contact of an element in one of its states, and that state's motion.
 #[inline(always)]
-fn linearise<T: Real, M: Model<T>>(
+pub(crate) fn linearise<T: Real, M: Model<T>>(
     model: &M,
     element: &Element<T, M>,
     work: &Work<T, M>,

@@ -194,6 +194,13 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
     }
 }
 
+impl<T: Real, M: Model<T>> Clone for Answer<T, M> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<T: Real, M: Model<T>> Copy for Answer<T, M> {}
+
 /// Solves the scene that was laid into `places`.
 pub(crate) fn solve<T: Real, M: Model<T>>(
     model: &M,

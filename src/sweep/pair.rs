@@ -1,6 +1,6 @@
 //! The symmetric 2x2 block of bending: unknowns (w, theta), rigid motion T = [[1, -h], [0, 1]].
 
-use super::{Block, Stamp};
+use super::{Block, Factor, Stamp};
 use crate::real::{Pair, Real, Square};
 use core::ops::Add;
 
@@ -62,6 +62,21 @@ impl<T: Real> Add for Symmetric<T> {
 /// The block of bending.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bending;
+
+impl<T: Real> Factor<T, Bending> {
+    /// After back substitution a factor is spent: its room can hold four numbers.
+    #[inline(always)]
+    pub(crate) fn keep(&mut self, [a, b, c, d]: [T; 4]) {
+        self.gain = T::Mat2::of([[a, b], [c, d]]);
+    }
+
+    /// The numbers in its room.
+    #[inline(always)]
+    pub(crate) fn kept(&self) -> [T; 4] {
+        let [[a, b], [c, d]] = self.gain.columns();
+        [a, b, c, d]
+    }
+}
 
 impl<T: Real> Block<T> for Bending {
     type Vector = T::Vec2;

@@ -99,3 +99,24 @@ pub const FLOORS: f64 = 8.0;
 pub const RESOLVABLE: f64 = 1e8;
 /// Residual that rounding may leave of a foundation that is all but rigid, on coarse meshes.
 pub const RIGID_FLOOR: f64 = 1e-4;
+
+/// Tangents against differences of order four with a step of 1e-3: their own error, relative to the largest
+/// derivative of the same kind of output ...
+pub const DERIVATIVE: f64 = 1e-6;
+/// ... and the rounding and residual of the solves, relative to the outputs, over the step.
+pub const DIFFERENCE: f64 = 1e-12;
+/// The same where the law has a root at the contact's edge (Hertz): quadrature next to an edge that moves.
+pub const DERIVATIVE_HERTZ: f64 = 1e-5;
+/// The same on random scenes, where a contact edge may pass a node within the step; next to a touch the error of
+/// order two is allowed beside it.
+pub const DERIVATIVE_RANDOM: f64 = 2e-6;
+/// Tangents and adjoints are the same sums in another order: rounding ...
+pub const TRANSPOSED: f64 = 1e-9;
+/// ... and of the outputs themselves, where a derivative is small beside them.
+pub const TRANSPOSED_FLOOR: f64 = 1e-12;
+/// Influence lines at nodes are symmetric to rounding.
+pub const RECIPROCAL: f64 = 1e-11;
+/// Euler's identities: residuals of the solve.
+pub const EULER: f64 = 1e-8;
+/// Derivatives in single precision.
+pub const DERIVATIVE_SINGLE: f64 = 2e-3;

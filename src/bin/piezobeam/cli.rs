@@ -27,6 +27,7 @@ Examples:
   piezobeam solve beam.toml --elements 400
   piezobeam solve beam.toml --samples 101 --format csv --out beam.csv
   piezobeam solve beam.toml --format json --out beam.json --plot beam.svg --force
+  piezobeam solve beam.toml --sensitivities
 
 Units of the samples: x, bending and stretching in m; slope in m/m; moment in N m; shear and
 axial_force in N; potential in V; electric_displacement in C.
@@ -89,6 +90,9 @@ pub struct SolveArgs {
     /// text for people, json with full-precision numbers, csv with one row per sample
     #[arg(long, value_enum, value_name = "FORMAT", default_value_t = Format::Text)]
     pub format: Format,
+    /// Add derivatives of bending, contact force, reactions and potential to the scene's parameters
+    #[arg(long)]
+    pub sensitivities: bool,
     /// Write the report to this file instead of standard output
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
@@ -194,6 +198,9 @@ impl Cli {
         let Command::Solve(args) = &self.command else {
             return None;
         };
+        if args.sensitivities && args.format == Format::Csv {
+            return Some("csv holds samples only; ask for --sensitivities with --format text or json".into());
+        }
         let same = |a: &Option<PathBuf>, b: Option<&PathBuf>| a.is_some() && a.as_ref() == b;
         if same(&args.out, args.plot.as_ref()) {
             return Some("--out and --plot name the same file; give each its own".into());
@@ -288,6 +295,8 @@ mod tests {
         assert!(conflict("piezobeam solve a.toml --out b.svg --plot b.svg").is_some());
         assert!(conflict("piezobeam solve a.toml --out a.toml --force").is_some());
         assert!(conflict("piezobeam solve a.toml --out b.json --plot b.svg").is_none());
+        assert!(conflict("piezobeam solve a.toml --sensitivities --format csv").is_some());
+        assert!(conflict("piezobeam solve a.toml --sensitivities --format json").is_none());
     }
 
     #[test]

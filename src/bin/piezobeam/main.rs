@@ -13,6 +13,7 @@ mod profile;
 mod render;
 mod report;
 mod scene_file;
+mod sensitivities;
 mod tasks;
 
 use cli::{
@@ -57,7 +58,7 @@ fn solve(args: &SolveArgs) -> Outcome {
     }
     let file = scene_file::read(&args.scene)?;
     let run = |samples| {
-        let task = tasks::Solve { stop: args.stop, samples };
+        let task = tasks::Solve { stop: args.stop, samples, sensitivities: args.sensitivities };
         model::with(&file, args.elements, args.precision, task).map_err(|e| file.complaint(&e))
     };
     let solved = run(args.samples)?;

@@ -30,6 +30,43 @@ pub struct Report {
     pub resultants: Resultants,
     /// Floating-point type of the solve: `f64` or `f32`.
     pub precision: String,
+    /// `None` where they were not asked for.
+    pub sensitivities: Option<Sensitivities>,
+}
+
+/// Derivatives of outputs to the parameters of the scene.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Sensitivities {
+    /// What a number means, in a sentence.
+    pub meaning: &'static str,
+    /// Why there are none.
+    pub error: Option<String>,
+    /// What they may not say of changes of finite size.
+    pub warning: Option<String>,
+    pub parameters: Vec<Parameter>,
+    pub outputs: Vec<Output>,
+}
+
+/// What a derivative is taken to.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Parameter {
+    /// Its field in a scene file.
+    pub name: String,
+    /// m: where, of a concentrated load.
+    pub x: Option<f64>,
+    /// N, N m or V; `None`: a factor on the whole profile, which has no unit.
+    pub unit: Option<&'static str>,
+}
+
+/// What is differentiated.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Output {
+    pub name: &'static str,
+    /// m: where, of a field.
+    pub x: Option<f64>,
+    pub unit: &'static str,
+    /// To the parameters in their order, in `unit`, or in `unit` per unit of the parameter.
+    pub derivatives: Vec<f64>,
 }
 
 /// The fields at the points `x`; `None` for a field the scene does not have.

@@ -2,6 +2,7 @@
 
 use crate::model::Task;
 use crate::report::{Contact, Reaction, Report, Resultants, Samples, Timing, Uniqueness};
+use crate::sensitivities;
 use piezobeam::{Error, Fields, HeapWorkspace, Model, Problem, Real, Settings, Solution, Status};
 use std::time::Instant;
 
@@ -16,14 +17,19 @@ pub struct Solve {
     /// `None`: the library's default.
     pub stop: Option<f64>,
     pub samples: usize,
+    pub sensitivities: bool,
 }
 
 impl Task for Solve {
     type Output = Solved;
     fn run<T: Real, M: Model<T>>(self, problem: Problem<'_, T, M>) -> Result<Solved, Error> {
         let mut memory = HeapWorkspace::new();
-        let solution = problem.solve(&mut memory, &settings::<T>(self.stop))?;
-        Ok(solved(&solution, self.samples))
+        let mut prepared = problem.prepare(&mut memory)?;
+        let mut solved = solved(&prepared.solution(&settings::<T>(self.stop))?, self.samples);
+        if self.sensitivities {
+            solved.report.sensitivities = Some(sensitivities::of(&mut prepared));
+        }
+        Ok(solved)
     }
 }
 
@@ -141,6 +147,7 @@ fn solved<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>, samples: usize) -
             equilibrium_error: found.equilibrium_error.f64(),
         },
         precision: core::any::type_name::<T>().into(),
+        sensitivities: None,
     };
     Solved { report, gap }
 }

@@ -2,7 +2,10 @@
 
 use std::f64::consts::PI;
 
-use crate::report::{CONVERGED, Contact, Picture, Reaction, Report, Resultants, Samples, Uniqueness};
+use crate::report::{
+    CONVERGED, Contact, Output, Parameter, Picture, Reaction, Report, Resultants, Samples, Sensitivities,
+    Uniqueness,
+};
 
 const POINTS: usize = 129;
 
@@ -36,6 +39,7 @@ fn base(title: &str, length: f64, bending: impl Fn(f64) -> f64) -> Picture {
             uniqueness: Uniqueness { certified: true, ..Uniqueness::default() },
             resultants: Resultants::default(),
             precision: "f64".into(),
+            sensitivities: None,
         },
         title: title.into(),
         length,
@@ -109,6 +113,24 @@ pub fn zero() -> Picture {
     p.gap = Some(vec![0.0; POINTS]);
     p.report.contact = Some(Contact::default());
     p
+}
+
+/// A few derivatives of [`partial`].
+pub fn sensitivities() -> Sensitivities {
+    let parameter = |name: &str, x, unit| Parameter { name: name.into(), x, unit };
+    Sensitivities {
+        meaning: "what a number means",
+        error: None,
+        warning: Some("the beam only touches".into()),
+        parameters: vec![
+            parameter("beam.bending", None, None),
+            parameter("load.points.force", Some(0.3), Some("N")),
+        ],
+        outputs: vec![
+            Output { name: "bending", x: Some(0.5), unit: "m", derivatives: vec![0.0624, -1.25e-6] },
+            Output { name: "contact force", x: None, unit: "N", derivatives: vec![-1234.5, 0.5] },
+        ],
+    }
 }
 
 /// A made-up measurement.

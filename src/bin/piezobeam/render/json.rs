@@ -106,6 +106,7 @@ mod tests {
                 "bending_energy",
                 "equilibrium_error",
                 "precision",
+                "sensitivities",
             ],
         );
         let value: Value = serde_json::from_str(&text).unwrap();
@@ -138,6 +139,17 @@ mod tests {
         assert_eq!(value["residual"], Value::Null);
         assert_eq!(value["samples"]["bending"][1], Value::Null);
         assert_eq!(value["samples"]["bending"][2], -1.0 / 3.0);
+    }
+
+    #[test]
+    fn derivatives() {
+        let mut report = fixture::partial().report;
+        report.sensitivities = Some(fixture::sensitivities());
+        let value: Value = serde_json::from_str(&solve(&report)).unwrap();
+        let found = &value["sensitivities"];
+        assert_eq!(found["parameters"][1]["unit"], "N");
+        assert_eq!(found["parameters"][0]["unit"], Value::Null);
+        assert_eq!(found["outputs"][0]["derivatives"][1], -1.25e-6);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use comfy_table::{CellAlignment, Table, presets};
 
 use super::{extremes, fields, quantity, significant, zones};
-use crate::report::{Checked, Picture, Report, Timing, Uniqueness};
+use crate::report::{Checked, Picture, Report, Sensitivities, Timing, Uniqueness};
 
 const DIGITS: usize = 6;
 
@@ -27,6 +27,9 @@ pub fn solve(picture: &Picture) -> String {
     out.push('\n');
     out += &pairs(&results(picture));
     out += &warnings(&report.warnings);
+    if let Some(found) = &report.sensitivities {
+        out += &sensitivities(found);
+    }
     out
 }
 
@@ -173,6 +176,35 @@ fn warnings(warnings: &[String]) -> String {
     out
 }
 
+/// Derivatives, a row for each parameter; four digits, so that the table fits a screen.
+fn sensitivities(found: &Sensitivities) -> String {
+    const DIGITS: usize = 4;
+    if let Some(error) = &found.error {
+        return format!("\nno derivatives: {error}\n");
+    }
+    let place = |x: Option<f64>| x.map_or(String::new(), |x| format!("at {}", quantity(x, "m", DIGITS)));
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING);
+    let names = found.outputs.iter().map(|output| format!("{}\n{}", output.name, place(output.x)));
+    table.set_header(std::iter::once("derivative of\nto".to_owned()).chain(names));
+    for (i, parameter) in found.parameters.iter().enumerate() {
+        let name = format!("{} {}", parameter.name, place(parameter.x)).trim_end().to_owned();
+        let cells = found.outputs.iter().map(|output| {
+            let unit = match parameter.unit {
+                Some(per) => format!("{}/{}", output.unit, per.replace(' ', "/")),
+                None => output.unit.to_owned(),
+            };
+            output.derivatives.get(i).map_or(String::new(), |&value| quantity(value, &unit, DIGITS))
+        });
+        table.add_row(std::iter::once(name).chain(cells));
+    }
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    let warning = found.warning.as_ref().map_or(String::new(), |warning| format!("warning: {warning}\n"));
+    format!("\n{}{}\n{warning}", lines(table), found.meaning)
+}
+
 /// Names and values in two aligned columns.
 fn pairs(rows: &[(String, String)]) -> String {
     let mut table = Table::new();
@@ -267,6 +299,27 @@ mod tests {
         has(&solve(&picture), &["bending 0 m everywhere 0 m everywhere", "contact zones none"]);
         picture.report.samples.bending = Some(vec![f64::NAN; picture.report.samples.x.len()]);
         has(&solve(&picture), &["bending no finite value"]);
+    }
+
+    #[test]
+    fn derivatives() {
+        let mut picture = fixture::partial();
+        let mut found = fixture::sensitivities();
+        picture.report.sensitivities = Some(found.clone());
+        let text = solve(&picture);
+        has(
+            &text,
+            &[
+                "derivative of bending contact force",
+                "to at 0.5 m",
+                "beam.bending 62.4 mm -1.234 kN",
+                "load.points.force at 0.3 m -1.25 µm/N 0.5 N/N",
+            ],
+        );
+        assert!(text.ends_with("\nwhat a number means\nwarning: the beam only touches\n"), "{text}");
+        found.error = Some("solve first".into());
+        picture.report.sensitivities = Some(found);
+        assert!(solve(&picture).ends_with("\nno derivatives: solve first\n"));
     }
 
     #[test]
