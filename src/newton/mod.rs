@@ -381,7 +381,8 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     ) -> Result<Option<Residual<T>>, Halt> {
         let mut residual = self.check(scale, count)?;
         while residual.relative() > enough.max(stop) {
-            self.best = Some((self.current, residual));
+            let before = residual;
+            self.best = Some((self.current, before));
             let polished = self.polish(scale, count);
             residual = self.tried(polished)?;
             if residual.relative() <= enough {
@@ -391,7 +392,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 Cut::Whole => {}
                 Cut::Shorter => residual = self.check(scale, count)?,
                 // No energy can judge this step; the residual still can.
-                Cut::Nowhere if self.best.is_some_and(|(_, best)| residual.relative() < best.relative()) => {}
+                Cut::Nowhere if residual.relative() < before.relative() => {}
                 Cut::Nowhere => return Ok(None),
             }
         }
@@ -497,10 +498,16 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             slope = self.derivative(t, scale, count, &mut fault)?.0;
             *(if slope <= zero { &mut low } else { &mut high }) = (t, slope);
         }
+        if let Some(halt) = fault
+            && low.1 < -enough
+            && !high.1.is_finite()
+        {
+            // The energy falls all the way to where the law ends.
+            return Err(halt);
+        }
         let t = low.0;
         if t == zero {
-            // The energy falls nowhere, or only to where the law ends.
-            return fault.map_or(Ok(Cut::Nowhere), Err);
+            return Ok(Cut::Nowhere);
         }
         let current = self.current;
         for Place { work, .. } in self.places.iter_mut() {
@@ -557,13 +564,28 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     /// on any admissible increment, the difference of an element's moments from them is all its load.
     fn polish(&mut self, scale: T, count: &mut Count) -> Result<Residual<T>, Halt> {
         self.keep_best();
-        let all = 0..self.places.len();
+        let open = self.rejoin(scale, count)?;
+        self.increment(open, scale, count)
+    }
+
+    /// The best state with its nodes joined anew, its residual, and what is missing of equilibrium; by how much
+    /// the left end has to move.
+    fn rejoin(&mut self, scale: T, count: &mut Count) -> Result<T::Vec2, Halt> {
+        count.spend(self.places.len())?;
         let open = self.join_nodes();
         if self.two_way() {
             self.electric();
         }
-        self.balance(scale, true)?;
-        count.spend(2 * all.len())?;
+        // Where the foundation is all but rigid the last digits of d are forces: the residual is another one.
+        let residual = self.balance(scale, true)?;
+        self.best = Some((self.current, residual));
+        Ok(open)
+    }
+
+    /// The step for what [`Level::rejoin`] left open, and the residual after it.
+    fn increment(&mut self, open: T::Vec2, scale: T, count: &mut Count) -> Result<Residual<T>, Halt> {
+        let all = 0..self.places.len();
+        count.spend(all.len())?;
         self.condense(all, scale, Solve::Increment { open })?;
         self.substitute(true).ok_or(Halt::Breakdown(self.meeting - 1))?;
         count.iterations += 1;
@@ -594,22 +616,34 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
 
     /// Takes the rounding of the sweeps out of a converged state, where there is any to speak of; keeps
     /// what is better.
-    pub(crate) fn refine(&mut self, count: &mut Count) -> Result<(), Halt> {
-        let Some((_, best)) = self.best else { return Ok(()) };
+    pub(crate) fn refine(&mut self, stop: T, count: &mut Count) -> Result<(), Halt> {
+        let Some((current, best)) = self.best else { return Ok(()) };
         if best.relative() <= T::of(128.0) * T::epsilon() {
             return Ok(());
         }
-        let polished = self.polish(T::one(), count);
-        if let Ok(residual) = polished
-            && residual.relative() < best.relative()
-        {
-            self.best = Some((self.current, residual));
+        for Place { work, .. } in self.places.iter_mut() {
+            work.states[1 - current].d = work.states[current].d;
         }
+        let refined = self.rejoin(T::one(), count).and_then(|open| {
+            if self.best.is_none_or(|(_, joined)| joined.relative() > stop) {
+                // The nodes as they were are better than any sum of the relative unknowns.
+                for Place { work, .. } in self.places.iter_mut() {
+                    work.states[current].d = work.states[1 - current].d;
+                }
+                self.best = Some((current, best));
+                return Ok(());
+            }
+            let residual = self.increment(open, T::one(), count)?;
+            if self.best.is_some_and(|(_, joined)| residual.relative() < joined.relative()) {
+                self.best = Some((self.current, residual));
+            }
+            Ok(())
+        });
         self.keep_best();
-        match polished {
+        match refined {
             // The state was good enough before; that there is no more work to spend on it changes nothing.
-            Ok(_) | Err(Halt::Budget) => Ok(()),
-            Err(halt) => Err(halt),
+            Err(Halt::Budget) => Ok(()),
+            refined => refined,
         }
     }
 

@@ -256,7 +256,7 @@ pub(crate) fn solve<T: Real, M: Model<T>>(
                 };
             }
             if rank == 0 && outcome == Ok(Outcome::Converged) {
-                outcome = level.refine(&mut count).map(|()| Outcome::Converged);
+                outcome = level.refine(settings.stop, &mut count).map(|()| Outcome::Converged);
             }
         }
         if rank == 0 {
