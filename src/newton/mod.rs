@@ -261,7 +261,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         self.best = None;
         let changed = if self.fresh { changed } else { 0..self.places.len() };
         let mut outcome = self.descend(changed, scale, stop, most, count);
-        if outcome == Ok(Outcome::Stalled) && self.context.onto.is_some() {
+        if outcome == Ok(Outcome::Stalled) && !self.convex() {
             self.keep_best();
             outcome = self.descend_coupled(scale, stop, most, count);
         }
@@ -322,10 +322,10 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 residual = self.settle(scale, stop, count)?;
                 checked = true;
             }
-            if self.convex() && (rounds_since_best >= FULL_STEPS || !residual.is_finite()) {
+            if rounds_since_best >= FULL_STEPS || !residual.is_finite() {
                 // Full steps do not help from here: down the energy from the best state, unless there are
-                // better ways to start.
-                if most < usize::MAX {
+                // better ways to start, or no energy.
+                if most < usize::MAX || !self.convex() {
                     return Ok(Outcome::Stalled);
                 }
                 self.keep_best();
@@ -348,9 +348,6 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             // At the floor no progress can be expected; above it, patience ends.
             if least <= T::of(4.0) * residual.floor() && rounds_since_best >= FLOOR_STEPS {
                 return Ok(Outcome::Floor);
-            }
-            if rounds_since_best >= FULL_STEPS && !self.convex() {
-                return Ok(Outcome::Stalled);
             }
             slow += usize::from(relative > T::of(0.1) * last);
             last = relative;
@@ -453,9 +450,9 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         move |i| if (start..end).contains(&i) { scale } else { T::one() }
     }
 
-    /// Is bending, with the potential as it is, the minimum of a convex energy?
+    /// Is bending, with the potential as it is, the minimum of a convex energy, or all but?
     pub(crate) fn convex(&self) -> bool {
-        self.context.onto.is_none()
+        !self.is_tied()
     }
 
     /// After a step from the best state (the spare one) to the current one: cuts it to where the energy is
@@ -526,14 +523,16 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         fault: &mut Option<Halt>,
     ) -> Result<(T, T), Halt> {
         count.spend(self.places.len())?;
-        let model = self.context.model;
+        let Context { model, ref onto, .. } = *self.context;
         let scale = self.scaling(scale);
+        let mut node = &self.node;
         let (mut sum, mut size) = (Sum::<T>::default(), T::zero());
         for (i, Place { element, work }) in self.places.iter().enumerate() {
             let (from, to) = (work.states[1 - self.current], work.states[self.current]);
             let State { e, d } = from.toward(to, t);
             let motion = Motion::new(element.h, e, d);
-            let contact = match Contact::at(model, element, &motion, Cubic::default, scale(i)) {
+            let q = || potential(element, work, node, onto);
+            let contact = match Contact::at(model, element, &motion, q, scale(i)) {
                 Err(Fault::NotFinite) => {
                     *fault = Some(Halt::Law(i, Fault::NotFinite));
                     return Ok((T::infinity(), T::zero()));
@@ -552,6 +551,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 sum.add(part);
                 size = size + part.abs();
             }
+            node = &work.node;
         }
         let sum = sum.value();
         Ok((if sum.is_finite() { sum } else { T::infinity() }, T::of(16.0) * T::epsilon() * size))

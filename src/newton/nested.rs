@@ -344,9 +344,8 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
         self.current = level.current;
         let most = if finest { 4 * STAGE } else { STAGE };
         let outcome = self.iterate(T::one(), stop, most, count)?;
-        if finest && outcome == Outcome::Stalled {
-            // Nothing cheaper is left.
-            return self.descend_coupled(T::one(), stop, most, count);
+        if outcome == Outcome::Stalled && self.convex() {
+            return self.climb_from(stop, finest, count);
         }
         Ok(outcome)
     }
@@ -375,6 +374,10 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
         let stiffness = self.stiffness();
         let widest = self.places.iter().fold(T::zero(), |m, p| m.max(p.element.h)) * T::of(MERGED as f64);
         let scale = T::of(4.0) * self.bending() / stiffness / widest.powi(4);
+        if scale >= T::one() && self.context.onto.is_some() {
+            // Not the contact's layers: the potential's action is what does not settle.
+            return self.descend_coupled(T::one(), stop, if finest { 4 * STAGE } else { STAGE }, count);
+        }
         self.climb(scale.max(T::min_positive_value()), stiffness, false, stop, finest, count)
     }
 
