@@ -55,6 +55,15 @@ pub enum Warning<T> {
         /// Where \[m\].
         x: T,
     },
+    /// The foundation is so much stiffer than the elements that no solution was found for it as it is. It is taken as
+    /// one that is rigid to the elements (k h^4 / C = 1e7, in `f32` 8e3): bending, moments and forces are those
+    /// of a rigid foundation, the penetration is larger than asked for.
+    Rigid {
+        /// The smallest stiffness that was taken for a larger one \[N/m^2\].
+        stiffness: T,
+        /// Where \[m\].
+        x: T,
+    },
     /// Condition (2.15) fails: there may be other solutions.
     NotUnique {
         /// The smaller of the two margins.
@@ -91,6 +100,12 @@ impl<T: Real> fmt::Display for Warning<T> {
             Self::GapKink { x } => {
                 write!(f, "the gap has a kink at x = {x}; hypothesis (2.14) of the theory asks for none")
             }
+            Self::Rigid { stiffness, x } => write!(
+                f,
+                "the foundation is too stiff for this mesh to be solved as it is, and was taken as one of {:.1e} \
+                 N/m^2 at x = {x} or stiffer: rigid to the elements, but with a larger penetration",
+                stiffness.f64()
+            ),
             Self::NotUnique { margin } => write!(
                 f,
                 "the uniqueness condition (2.15) fails (margin {margin:.3}, 1 needed): there may be other \

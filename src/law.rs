@@ -56,6 +56,13 @@ pub trait Compliance<T: Real> {
     /// (p, dp/dr) at x and r > 0, where the sampled coefficient has the value `k`.
     fn pressure(&self, k: T, x: T, r: T) -> (T, T);
 
+    /// The coefficient `k`, or the largest for which the law is nowhere stiffer than `most` \[N/m^2\]. A law
+    /// whose stiffness grows with the penetration has no such coefficient and keeps its own.
+    fn at_most(&self, k: T, most: T) -> T {
+        let _ = most;
+        k
+    }
+
     /// Is p = k r, k the sampled coefficient? Then whole elements in contact need no quadrature.
     const LINEAR: bool = false;
 
@@ -105,6 +112,10 @@ impl<T: Real, K: Profile<T>> Compliance<T> for Linear<K> {
     }
     fn breaks(&self) -> &[T] {
         self.0.breaks()
+    }
+    #[inline(always)]
+    fn at_most(&self, k: T, most: T) -> T {
+        k.min(most)
     }
     #[inline(always)]
     fn pressure(&self, k: T, _: T, r: T) -> (T, T) {
@@ -160,6 +171,9 @@ impl<T: Real, K: Profile<T>> Compliance<T> for Power<T, K> {
     }
     fn breaks(&self) -> &[T] {
         self.stiffness.breaks()
+    }
+    fn at_most(&self, k: T, most: T) -> T {
+        if self.exponent == T::one() { k.min(most) } else { k }
     }
     #[inline]
     fn pressure(&self, k: T, _: T, r: T) -> (T, T) {

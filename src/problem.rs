@@ -144,7 +144,9 @@ impl<'s, T: Real, M: Model<T>> Prepared<'s, T, M> {
     }
 
     fn run(&mut self, settings: &Settings<T>) -> Result<Answer<T, M>, Error> {
-        self.answer = None;
+        if self.answer.take().is_some_and(|last| last.rigid) {
+            nested::harden(self.scene, self.places, &self.levels);
+        }
         let answer = nested::solve(self.scene, self.places, &self.levels, settings)?;
         self.answer = Some(answer);
         Ok(answer)

@@ -79,6 +79,8 @@ pub struct Solution<'s, T: Real, M: Model<T>> {
     report: Report<T>,
     pub(crate) state: usize,
     pub(crate) left: Node<T, M>,
+    /// The foundation was taken as one that is rigid to the elements.
+    rigid: bool,
 }
 
 /// An element in its solved state.
@@ -91,6 +93,7 @@ pub(crate) struct Solved<'s, T: Real, M: Model<T>> {
     pub(crate) left: &'s Node<T, M>,
     pub(crate) right: &'s Node<T, M>,
     pub(crate) mid: T,
+    rigid: bool,
     pub(crate) ratio: Ratio<T>,
     /// Force and moment at the left node: shear and minus the moment.
     held: T::Vec2,
@@ -100,8 +103,8 @@ pub(crate) struct Solved<'s, T: Real, M: Model<T>> {
 
 impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
     pub(crate) fn new(scene: &'s M, places: &'s [Place<T, M>], answer: Answer<T, M>) -> Self {
-        let Answer { report, state, left, .. } = answer;
-        Self { scene, places, report, state, left }
+        let Answer { report, state, left, rigid, .. } = answer;
+        Self { scene, places, report, state, left, rigid }
     }
 
     /// How the solve went: status, residual, work.
@@ -233,8 +236,14 @@ impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
         let mut warnings = certificate::hypotheses(self.scene, &self.uniqueness());
         let mut stretch = (T::zero(), T::zero());
         let mut turn = (T::zero(), T::zero());
+        let mut rigid: Option<(T, T)> = None;
+        let law = self.scene.foundation().law;
         for i in 0..self.places.len() {
             let solved = self.solved(i);
+            let (asked, taken) = (law.coefficient(solved.mid, solved.mid), solved.stiffness(solved.mid));
+            if taken < asked && rigid.is_none_or(|(least, _)| taken < least) {
+                rigid = Some((taken, solved.mid));
+            }
             for x in [solved.element.x(T::one()), solved.element.right] {
                 let strain = solved.axial_strain(x);
                 if strain.abs() > stretch.0.abs() {
@@ -245,6 +254,9 @@ impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
                     turn = (slope, x);
                 }
             }
+        }
+        if let Some((stiffness, x)) = rigid {
+            let _ = warnings.try_push(Warning::Rigid { stiffness, x });
         }
         if stretch.0.abs() > T::of(0.05) {
             let _ = warnings.try_push(Warning::LargeStrain { strain: stretch.0, x: stretch.1 });
@@ -280,9 +292,21 @@ impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
         }
         let mid = element.x(T::of(0.5));
         let right = &work.node;
-        let held = T::Vec2::default();
-        let mut solved =
-            Solved { scene: self.scene, element, motion, eta, q, left, right, mid, ratio, held, splits };
+        let (held, rigid) = (T::Vec2::default(), self.rigid);
+        let mut solved = Solved {
+            scene: self.scene,
+            element,
+            motion,
+            eta,
+            q,
+            left,
+            right,
+            mid,
+            rigid,
+            ratio,
+            held,
+            splits,
+        };
         // A state without a converged law may not be linearised: then the law's force is left out, as the
         // status says.
         let (force, _) = Contact::at(self.scene, element, &motion, || q, T::one())
@@ -302,6 +326,13 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
         ((self.element.right - x) / self.element.h).max(T::zero()).min(T::one())
     }
 
+    /// The law's coefficient at x, as the element has it.
+    fn stiffness(&self, x: T) -> T {
+        let law = self.scene.foundation().law;
+        let k = law.coefficient(x, self.mid);
+        if self.rigid { law.at_most(k, self.element.rigid()) } else { k }
+    }
+
     /// Pressure p and conduction force mu1 R(q) R~(eta) at t \[N/m\].
     fn forces(&self, t: T) -> [T; 2] {
         let r = self.eta.at(t);
@@ -310,7 +341,7 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
         }
         let foundation = self.scene.foundation();
         let x = self.element.x(t);
-        let k = foundation.law.coefficient(x, self.mid);
+        let k = self.stiffness(x);
         let p = if M::Law::PRESENT { foundation.law.pressure(k, x, r).0 } else { T::zero() };
         // A law that is not finite ended the solve and is its status; the best iterate is shown without it.
         let p = if p.is_finite() { p } else { T::zero() };
@@ -381,7 +412,7 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
         let square = self.element.h * self.element.h;
         [0.0, 0.25, 0.5, 0.75, 1.0].map(T::of).into_iter().any(|t| {
             let (r, x) = (self.eta.at(t), self.element.x(t));
-            let k = law.coefficient(x, self.mid);
+            let k = self.stiffness(x);
             r > T::zero() && law.pressure(k, x, r).1 / stiffness * square * square > T::of(500.6)
         })
     }

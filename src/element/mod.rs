@@ -152,12 +152,47 @@ impl<T: Real, M: Model<T>> Element<T, M> {
         })
     }
 
+    /// The stiffness of a foundation that is rigid to this element \[N/m^2\].
+    pub(crate) fn rigid(&self) -> T {
+        // 4 C / h is the last entry of the bending energy.
+        let stiffness = T::of(0.25) * self.bending.yy / self.h / self.h / self.h;
+        stiffness * T::of(RIGID).min(T::of(1e-3) / T::epsilon())
+    }
+
+    /// The law's coefficient on this element, at most as stiff as is rigid to it; and whether that made a
+    /// difference.
+    pub(crate) fn soften(&mut self, law: &M::Law) -> bool {
+        let rigid = self.rigid();
+        let samples = gauss::<POINTS>().map(|(t, _)| self.law.at(T::of(t)));
+        let softer = samples.map(|k| law.at_most(k, rigid));
+        if softer == samples {
+            return false;
+        }
+        self.law = Piece::from_samples(softer);
+        true
+    }
+
+    /// Takes back what [`Element::soften`] did.
+    pub(crate) fn harden(&mut self, law: &M::Law) {
+        let mid = self.x(T::of(0.5));
+        self.law =
+            Piece::from_samples(gauss::<POINTS>().map(|(t, _)| law.coefficient(self.x(T::of(t)), mid)));
+    }
+
     /// Force and moment at the left end by the deformation e of the penetration, less the element's load.
     #[inline(always)]
     pub(crate) fn deforming_force(&self, e: T::Vec2) -> T::Vec2 {
         // The gap's bend is added to e before anything is multiplied: their sum, xi's own, is what bends.
         let bend = if M::Gap::PRESENT { e + self.gap.bend::<T>() } else { e };
         self.bending.times(bend) - self.fe
+    }
+
+    /// The larger one of the moments at both ends, without the contact's part inside the element.
+    #[inline(always)]
+    pub(crate) fn largest_moment(&self, e: T::Vec2) -> T {
+        let force = self.deforming_force(e);
+        let (left, right) = (force.y().abs(), (force.y() - self.h * force.x()).abs());
+        if left > right { left } else { right }
     }
 
     /// Has `other` the same nodes?
@@ -254,6 +289,11 @@ impl<T: Real, M: Model<T>> Element<T, M> {
         whole
     }
 }
+
+/// k h^4 / C of a foundation that is rigid to an element: it gives way by 1e-7 of what the element would bend
+/// under the same pressure, far less than the error of its cubic. (With less than double precision, as much as
+/// rounding lets it.)
+const RIGID: f64 = 1e7;
 
 /// Where an element samples.
 pub(crate) struct Span<T> {

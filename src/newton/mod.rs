@@ -184,6 +184,8 @@ pub(crate) struct Level<'a, 'b, T: Real, M: Model<T>> {
     pub(crate) fresh: bool,
     /// Elements whose law the continuation in the stiffness scales.
     scaled: Range<usize>,
+    /// The largest moment of the current state, as the last substitution saw it \[N m\].
+    size: T,
 }
 
 /// What a sweep solves for.
@@ -218,7 +220,8 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     pub(crate) fn new(context: &'b Context<'a, T, M>, places: &'b mut [Place<T, M>]) -> Self {
         let meeting = (places.len() / 2).max(1);
         let scaled = 0..places.len();
-        Self { context, places, node: Node::default(), current: 0, best: None, meeting, fresh: false, scaled }
+        let (node, size) = (Node::default(), T::zero());
+        Self { context, places, node, current: 0, best: None, meeting, fresh: false, scaled, size }
     }
 
     /// Is bending in a loop with the potential?
@@ -568,17 +571,33 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         self.increment(open, scale, count)
     }
 
-    /// The best state with its nodes joined anew, its residual, and what is missing of equilibrium; by how much
-    /// the left end has to move.
+    /// Joins the nodes of the best state anew and finds what is missing of equilibrium; by how much the left end
+    /// has to move.
+    ///
+    /// Where the foundation is all but rigid the last digits of d are forces, and a sum of the relative
+    /// unknowns from far away is less exact than the nodes were: then these stay.
     fn rejoin(&mut self, scale: T, count: &mut Count) -> Result<T::Vec2, Halt> {
         count.spend(self.places.len())?;
-        let open = self.join_nodes();
+        let (current, spare) = (self.current, 1 - self.current);
+        for Place { work, .. } in self.places.iter_mut() {
+            work.states[spare].d = work.states[current].d;
+        }
+        let mut open = self.join_nodes();
         if self.two_way() {
             self.electric();
         }
-        // Where the foundation is all but rigid the last digits of d are forces: the residual is another one.
-        let residual = self.balance(scale, true)?;
-        self.best = Some((self.current, residual));
+        let mut residual = self.balance(scale, true)?;
+        if self.best.is_some_and(|(_, best)| residual.relative() > T::of(2.0) * best.relative()) {
+            for Place { work, .. } in self.places.iter_mut() {
+                work.states[current].d = work.states[spare].d;
+            }
+            open = T::Vec2::default();
+            if self.two_way() {
+                self.electric();
+            }
+            residual = self.balance(scale, true)?;
+        }
+        self.best = Some((current, residual));
         Ok(open)
     }
 
@@ -616,25 +635,15 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
 
     /// Takes the rounding of the sweeps out of a converged state, where there is any to speak of; keeps
     /// what is better.
-    pub(crate) fn refine(&mut self, stop: T, count: &mut Count) -> Result<(), Halt> {
-        let Some((current, best)) = self.best else { return Ok(()) };
+    pub(crate) fn refine(&mut self, count: &mut Count) -> Result<(), Halt> {
+        let Some((_, best)) = self.best else { return Ok(()) };
         if best.relative() <= T::of(128.0) * T::epsilon() {
             return Ok(());
         }
-        for Place { work, .. } in self.places.iter_mut() {
-            work.states[1 - current].d = work.states[current].d;
-        }
         let refined = self.rejoin(T::one(), count).and_then(|open| {
-            if self.best.is_none_or(|(_, joined)| joined.relative() > stop) {
-                // The nodes as they were are better than any sum of the relative unknowns.
-                for Place { work, .. } in self.places.iter_mut() {
-                    work.states[current].d = work.states[1 - current].d;
-                }
-                self.best = Some((current, best));
-                return Ok(());
-            }
+            let joined = self.best;
             let residual = self.increment(open, T::one(), count)?;
-            if self.best.is_some_and(|(_, joined)| residual.relative() < joined.relative()) {
+            if joined.is_some_and(|(_, joined)| residual.relative() < joined.relative()) {
                 self.best = Some((self.current, residual));
             }
             Ok(())
@@ -783,9 +792,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         self.fresh = !step && (self.fresh || whole);
         residual.load = residual.load * length;
         if !whole {
-            // Of the elements passed over no more is known than the last moments. (After a whole sweep they would
-            // only make the residual small: an early state may be pressed in by far more than the solution.)
-            residual.size = residual.size.max(self.best.map_or(T::zero(), |(_, best)| best.size));
+            residual.size = residual.size.max(self.size);
         }
         if residual.is_finite() { Ok(residual) } else { Err(Halt::Breakdown(meeting - 1)) }
     }
@@ -878,9 +885,11 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             _ => self.current,
         };
         let mut near = d;
+        let mut size = T::zero();
         for Place { element, work } in west.iter_mut().rev() {
             let (e, far) = work.factor.substitute(near, element.h);
             work.states[target] = work.states[current].then(step, e, near);
+            size = larger(size, element.largest_moment(work.states[target].e));
             near = if M::Gap::PRESENT && !step { far + element.gap.kink::<T>() } else { far };
         }
         let mut near = d;
@@ -892,9 +901,10 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             // e = -T e^
             let e = -Bending::carry(element.h, e);
             work.states[target] = work.states[current].then(step, e, far);
+            size = larger(size, element.largest_moment(work.states[target].e));
             near = far;
         }
-        self.current = target;
+        (self.current, self.size) = (target, size);
         Some(if self.two_way() { 0..self.places.len() } else { self.changed() })
     }
 

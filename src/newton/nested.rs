@@ -134,6 +134,8 @@ pub(crate) struct Answer<T: Real, M: Model<T>> {
     pub(crate) left: Node<T, M>,
     /// Where the condensed parts meet, if they are those of the state.
     pub(crate) meeting: Option<usize>,
+    /// The foundation was taken as one that is rigid to the elements.
+    pub(crate) rigid: bool,
 }
 
 /// What the scene in `places` means for all meshes.
@@ -161,7 +163,7 @@ fn budget<T: Real>(settings: &Settings<T>, elements: usize) -> Count {
 
 impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
     /// The answer on the finest mesh, where an iteration ended so.
-    fn answer(mut self, outcome: Result<Outcome, Halt>, count: &Count) -> Answer<T, M> {
+    fn answer(mut self, outcome: Result<Outcome, Halt>, stop: T, count: &Count) -> Answer<T, M> {
         if !self.two_way() && (self.context.into || self.context.onto.is_none()) {
             self.electric();
         }
@@ -170,8 +172,11 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
         }
         let status = match outcome {
             Err(halt) => halt.into(),
-            Ok(Outcome::Converged) => Status::Converged,
-            Ok(Outcome::Floor) => Status::ToleranceBelowFloor,
+            // Refined, the residual may be found to be larger than it was.
+            Ok(Outcome::Converged) if self.best.is_some_and(|(_, best)| best.relative() <= stop) => {
+                Status::Converged
+            }
+            Ok(Outcome::Converged | Outcome::Floor) => Status::ToleranceBelowFloor,
             Ok(Outcome::Stalled) => Status::Stagnation,
         };
         // Moments may balance where displacements or fluxes are beyond the number format.
@@ -190,7 +195,7 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
             elements: self.places.len(),
         };
         let meeting = self.fresh.then_some(self.meeting);
-        Answer { report, state: self.current, left: self.node, meeting }
+        Answer { report, state: self.current, left: self.node, meeting, rigid: false }
     }
 }
 
@@ -202,6 +207,10 @@ impl<T: Real, M: Model<T>> Clone for Answer<T, M> {
 impl<T: Real, M: Model<T>> Copy for Answer<T, M> {}
 
 /// Solves the scene that was laid into `places`.
+///
+/// Under a foundation so stiff that the elements cannot resolve how it gives way, the contact's edge is found by luck
+/// if at all. Where a bounded share of the work does not find it, the foundation is taken as one that is just rigid
+/// to the elements ([`Element::rigid`]); the answer says so.
 pub(crate) fn solve<T: Real, M: Model<T>>(
     model: &M,
     places: &mut [Place<T, M>],
@@ -212,9 +221,51 @@ pub(crate) fn solve<T: Real, M: Model<T>>(
     let Some(&(_, elements)) = levels.first() else {
         return Err(Error::Capacity { needed: 1, available: 0 });
     };
-    let context = context(model, &places[..elements]);
+    let law = model.foundation().law;
+    let too_stiff = |place: &Place<T, M>| {
+        let (rigid, mid) = (place.element.rigid(), place.element.x(T::of(0.5)));
+        let k = law.coefficient(mid, mid);
+        law.at_most(k, rigid) < k
+    };
+    let rigid = M::Law::PRESENT && places[..elements].iter().any(too_stiff);
     let mut count = budget(settings, elements);
+    let most = count.most_visits;
+    if rigid {
+        count.most_visits = most.min(40 * elements + 5000);
+    }
+    let answer = descend(model, places, levels, settings, &mut count)?;
+    if !rigid || answer.report.status == Status::Converged {
+        return Ok(answer);
+    }
+    count.most_visits = most;
+    for &(start, len) in levels {
+        for place in &mut places[start..start + len] {
+            place.element.soften(law);
+        }
+    }
+    let answer = descend(model, places, levels, settings, &mut count)?;
+    Ok(Answer { rigid: true, ..answer })
+}
 
+/// Takes back what a solve did to the laws in `places` that found the foundation rigid.
+pub(crate) fn harden<T: Real, M: Model<T>>(model: &M, places: &mut [Place<T, M>], levels: &Levels) {
+    let Some(&(_, elements)) = levels.first() else { return };
+    for place in &mut places[..elements] {
+        place.element.harden(model.foundation().law);
+    }
+    coarsen(model, places, elements);
+}
+
+/// From the coarsest mesh to the finest.
+fn descend<T: Real, M: Model<T>>(
+    model: &M,
+    places: &mut [Place<T, M>],
+    levels: &Levels,
+    settings: &Settings<T>,
+    count: &mut Count,
+) -> Result<Answer<T, M>, Error> {
+    let elements = levels.first().map_or(0, |&(_, len)| len);
+    let context = context(model, &places[..elements]);
     let mut outcome = Ok(Outcome::Stalled);
     let mut state = 0;
     for (rank, &(start, len)) in levels.iter().enumerate().rev() {
@@ -237,30 +288,30 @@ pub(crate) fn solve<T: Real, M: Model<T>>(
         if outcome.is_ok() {
             let stop = if rank == 0 { settings.stop } else { T::of(ROUGH) };
             outcome = if coarsest {
-                level.begin(stop, rank == 0, &mut count)
+                level.begin(stop, rank == 0, count)
             } else {
-                level.iterate(T::one(), stop, STAGE, &mut count)
+                level.iterate(T::one(), stop, STAGE, count)
             };
             if !coarsest && outcome == Ok(Outcome::Stalled) {
                 outcome = if level.convex() {
                     // The contact's edges are known to a few elements: soften until its layers are as wide.
-                    level.climb_from(stop, rank == 0, &mut count)
+                    level.climb_from(stop, rank == 0, count)
                 } else if rank == 0 {
                     // The coarser meshes misled: start anew on this one.
                     for place in level.places.iter_mut() {
                         place.work.states = [State::default(); 2];
                     }
-                    level.begin(stop, true, &mut count)
+                    level.begin(stop, true, count)
                 } else {
                     outcome
                 };
             }
             if rank == 0 && outcome == Ok(Outcome::Converged) {
-                outcome = level.refine(settings.stop, &mut count).map(|()| Outcome::Converged);
+                outcome = level.refine(count).map(|()| Outcome::Converged);
             }
         }
         if rank == 0 {
-            return Ok(level.answer(outcome, &count));
+            return Ok(level.answer(outcome, settings.stop, count));
         }
         state = level.current;
     }
@@ -326,7 +377,7 @@ pub(crate) fn follow<T: Real, M: Model<T>>(
     }
     // Not refined: a step for an increment would leave the condensed parts to be made anew.
     let outcome = level.iterate_from(changed, T::one(), settings.stop, 4 * STAGE, &mut count);
-    level.answer(outcome, &count)
+    level.answer(outcome, settings.stop, &count)
 }
 
 impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
