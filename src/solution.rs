@@ -400,21 +400,31 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
         (turn, lift)
     }
 
-    /// Is the foundation stiffer than the element? Integrating the curvature is one step of a fixed point for the
-    /// bending between the nodes: it multiplies the error of the penetration by k h^4 / (4.73^4 C), 4.73 the first
-    /// root of the clamped beam. Where that is above one the element's own cubic is better.
-    fn held(&self) -> bool {
+    /// How much of what integrating the curvature adds to the element's own cubic is to be believed, from 0 to 1.
+    ///
+    /// Integrating is one step of a fixed point for the bending between the nodes: it multiplies the error of
+    /// the penetration by k h^4 / (4.73^4 C), 4.73 the first root of the clamped beam. Where that is above one and
+    /// the element is in contact the cubic is better; where it is free, what is added must not lead into the
+    /// foundation. (So fields depend continuously on the state.)
+    fn trust(&self) -> T {
         if !M::Law::PRESENT {
-            return false;
+            return T::one();
         }
         let law = self.scene.foundation().law;
         let stiffness = self.scene.beam().bending.value(self.mid, self.mid);
-        let square = self.element.h * self.element.h;
-        [0.0, 0.25, 0.5, 0.75, 1.0].map(T::of).into_iter().any(|t| {
-            let (r, x) = (self.eta.at(t), self.element.x(t));
-            let k = self.stiffness(x);
-            r > T::zero() && law.pressure(k, x, r).1 / stiffness * square * square > T::of(500.6)
-        })
+        let h = self.element.h;
+        let soft = stiffness / h / h / h / h;
+        let points = [0.0, 0.25, 0.5, 0.75, 1.0].map(T::of);
+        let held = |t: T| {
+            let x = self.element.x(t);
+            law.pressure(self.stiffness(x), x, self.eta.at(t).abs()).1 > T::of(500.6) * soft
+        };
+        if !points.into_iter().any(held) {
+            return T::one();
+        }
+        let clear = points.into_iter().fold(T::infinity(), |least, t| least.min(-self.eta.at(t)));
+        let added = self.net(T::of(0.5)).abs() / (T::of(384.0) * soft);
+        if clear <= T::zero() { T::zero() } else { T::one().min(clear / added) }
     }
 
     fn slope_at_node(&self, right: bool) -> T {
@@ -480,10 +490,10 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
         let (moment, shear) = self.statics(t);
 
         let gap = self.scene.foundation().gap;
-        let (bending, slope) = if self.held() {
-            let [s, turn, _] = gap.jet(x, self.mid);
-            (s + self.eta.at(t), turn - self.eta.slope(t) / h)
-        } else {
+        let [s, turn, _] = gap.jet(x, self.mid);
+        let (mut bending, mut slope) = (s + self.eta.at(t), turn - self.eta.slope(t) / h);
+        let trust = self.trust();
+        if trust > zero {
             // Two integrations of the curvature from the right node; what the element's own relative unknowns
             // differ by is laid over the element as its cubic, so that both nodes keep their values.
             let (turn, lift) = self.curvature(t);
@@ -492,8 +502,14 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
             let rest = Motion::new(h, rest, T::Vec2::default()).cubic();
             let [s_right, slope_right, _] = gap.jet(element.right, self.mid);
             let (w, theta) = (self.motion.d.x() + s_right, self.motion.d.y() + slope_right);
-            (w - h * t * theta + lift + rest.at(t), theta - turn - rest.slope(t) / h)
-        };
+            let integrated = (w - h * t * theta + lift + rest.at(t), theta - turn - rest.slope(t) / h);
+            if trust >= one {
+                (bending, slope) = integrated;
+            } else {
+                bending = bending + trust * (integrated.0 - bending);
+                slope = slope + trust * (integrated.1 - slope);
+            }
+        }
 
         let (tau, displacement) = self.fluxes(t);
         let sigma = self.ratio.sigma(tau, displacement);
