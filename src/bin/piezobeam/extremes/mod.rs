@@ -64,6 +64,8 @@ struct Case {
     zones: Option<usize>,
     /// Element visits allowed: so many per element and so many beside.
     visits: (usize, usize),
+    /// The residual may be at its rounding floor, above the tolerance, if the solve says so.
+    floor: bool,
 }
 
 struct Group {
@@ -181,6 +183,7 @@ impl Case {
             single: None,
             zones: None,
             visits: (10, 3000),
+            floor: false,
         }
     }
 
@@ -227,6 +230,10 @@ impl Case {
 
     fn zones(self, zones: usize) -> Self {
         Self { zones: Some(zones), ..self }
+    }
+
+    fn or_at_the_floor(self) -> Self {
+        Self { floor: true, ..self }
     }
 
     fn visits(self, per_element: usize, beside: usize) -> Self {
