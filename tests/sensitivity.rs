@@ -291,9 +291,6 @@ fn tangents_are_differences_of_solves_on_the_suite() {
     let mut complaints = Vec::new();
     for case in suite().iter().filter(|case| case.stiffness < tol::RIGID) {
         for shares in CONDUCTIONS {
-            if case.name == "stubborn" && shares == [1.0, 1.0] {
-                continue; // does not converge
-            }
             let tolerance = if case.name == "hertz" { tol::DERIVATIVE_HERTZ } else { tol::DERIVATIVE };
             let scene = conducting(&loaded(&case.scene), shares);
             let name = format!("{} {shares:?}", case.name);
@@ -309,9 +306,6 @@ fn adjoints_are_tangents() {
     let mut complaints = Vec::new();
     for case in suite() {
         for shares in CONDUCTIONS {
-            if case.name == "stubborn" && shares == [1.0, 1.0] {
-                continue;
-            }
             let scene = conducting(&loaded(&case.scene), shares);
             let outputs = outputs(scene.length);
             let levels = levels(&scene, &outputs, &values(&scene, SAMPLES, &outputs).expect("a solution"));

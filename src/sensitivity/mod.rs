@@ -140,8 +140,6 @@ pub enum SensitivityError {
         /// The length found.
         found: usize,
     },
-    /// Bending and potential act on each other too strongly for their rates to be found in turn.
-    Coupling,
     /// A pivot of the tangent is singular or not finite: the solution is at a turning point.
     Breakdown {
         /// Element, counted from 0.
@@ -167,11 +165,6 @@ impl fmt::Display for SensitivityError {
             Self::Length { expected, found } => {
                 write!(f, "expected room for {expected} derivatives, found {found}")
             }
-            Self::Coupling => write!(
-                f,
-                "bending and potential act on each other too strongly for their derivatives to be found in \
-                 turn; they can be for smaller mu1 or mu2"
-            ),
             Self::Breakdown { element } => write!(
                 f,
                 "the tangent is singular or not finite in element {element}: the solution has no derivative"
@@ -418,8 +411,9 @@ impl<T: Real, M: Model<T>> Prepared<'_, T, M> {
     /// No converged solution, no such parameter, or no derivative.
     ///
     /// # Cost
-    /// One linear sweep over the mesh and two passes for the potential; with conduction in both directions as
-    /// many as their fixed point takes. No allocation: the memory of the sweeps is used, the solution stays.
+    /// One linear sweep over the mesh, with conduction in both directions that of the coupled system, and two
+    /// passes for the potential, four where bending depends on it. No allocation: the memory of the sweeps is
+    /// used, the solution stays.
     pub fn tangent(&mut self, parameter: Parameter<T>) -> Result<Tangent<'_, T, M>, SensitivityError> {
         let mut system = self.system()?;
         if !parameter.is_in(system.scene) {
