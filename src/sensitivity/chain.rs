@@ -9,9 +9,9 @@
 //!
 //! and weights the transposed, in the opposite order. A is symmetric: one recursion serves both. Without
 //! conduction in both directions one of the two is known first and one sweep of bending solves the system. With
-//! it d(eta) moves the potential that loads it; the sweep then has u and q among its unknowns
-//! ([`crate::element::coupled`]), but only for the part of them that d(eta) makes. The rest is a load, as it is
-//! in one direction: so the fluxes are known once while bending rests, bending is swept, and the fluxes are known.
+//! it d(eta) moves the potential that loads it, and that part of u and q is among the sweep's unknowns
+//! ([`crate::element::coupled`]); what u and q do while bending rests is a load, as it is in one direction. So
+//! the order is always the same: the fluxes while bending rests, one sweep of bending, the fluxes again.
 //!
 //! Nothing is allocated: rates of (e, d) go where the solve keeps its spare state, rates at nodes into the room of
 //! the elements' factors, which are spent after back substitution. The solution stays as it is.
@@ -73,26 +73,32 @@ pub(super) fn variation<T: Real, M: Model<T>>(
     Variation { e, d, left: Flow::of(near), right: Flow::of(kept(view.places, i)) }
 }
 
-/// The weights of the penetration's rates in element i: in the output itself, and by way of the current.
-pub(super) fn load_of_output<T: Real, M: Model<T>>(
+/// The load of element i on (e, d), where the fluxes' rates or weights are `near` and `far`.
+fn load<T: Real, M: Model<T>>(
     view: &Solution<'_, T, M>,
     solved: &Solved<'_, T, M>,
+    task: Task<T>,
     i: usize,
-    output: Output<T>,
-    flux: [T; 4],
+    [near, far]: [[T; 4]; 2],
 ) -> (T::Vec2, T::Vec2) {
-    let (mut e, mut d) = (T::Vec2::default(), T::Vec2::default());
-    if output.concerns(view, i) {
-        let weights = Rate::weights(solved, i, output);
-        (e, d) = (weights.e, weights.d);
+    match task {
+        Task::Rates(along) => {
+            let (left, right) = (Flow::of(near), Flow::of(far));
+            let by = Variation { left, right, ..Variation::default() };
+            let (e, d) = Rate::new(solved, i, along, by).residual();
+            (-e, -d)
+        }
+        // What the penetration weighs in the output itself, and by way of the current.
+        Task::Weights(output) => {
+            let [m_u, m_q, _, r] = far;
+            let (mut e, mut d) = charging(solved, [m_u, m_q, r]);
+            if output.concerns(view, i) {
+                let weights = Rate::weights(solved, i, output);
+                (e, d) = (e + weights.e, d + weights.d);
+            }
+            (e, d)
+        }
     }
-    if M::Mu2::PRESENT {
-        let [m_u, m_q, _, r] = flux;
-        let (more_e, more_d) = charging(solved, [m_u, m_q, r]);
-        e += more_e;
-        d += more_d;
-    }
-    (e, d)
 }
 
 /// The unknowns of a sweep: those of bending, or these with u and q.
@@ -104,8 +110,8 @@ trait Swept<T: Real>: Block<T> {
     fn pair(v: Self::Vector) -> T::Vec2;
     /// The element's tangent, or its transposed.
     fn stamp<M: Model<T>>(solved: &Solved<'_, T, M>, transposed: bool) -> Result<Stamp<T, Self>, Fault>;
-    fn keep<M: Model<T>>(work: &mut Work<T, M>, factor: Factor<T, Self>);
-    fn factor<M: Model<T>>(work: &Work<T, M>) -> Factor<T, Self>;
+    /// Where the element's factor is kept, which there is wherever u and q are swept.
+    fn factor<M: Model<T>>(work: &mut Work<T, M>) -> Option<&mut Factor<T, Self>>;
 }
 
 impl<T: Real> Swept<T> for Bending {
@@ -123,12 +129,8 @@ impl<T: Real> Swept<T> for Bending {
         Ok(solved.contact()?.stamp(solved.element))
     }
 
-    fn keep<M: Model<T>>(work: &mut Work<T, M>, factor: Factor<T, Self>) {
-        work.factor = factor;
-    }
-
-    fn factor<M: Model<T>>(work: &Work<T, M>) -> Factor<T, Self> {
-        work.factor
+    fn factor<M: Model<T>>(work: &mut Work<T, M>) -> Option<&mut Factor<T, Self>> {
+        Some(&mut work.factor)
     }
 }
 
@@ -151,14 +153,8 @@ impl<T: Real> Swept<T> for Coupled {
         Ok(if transposed { stamp.turned() } else { stamp })
     }
 
-    fn keep<M: Model<T>>(work: &mut Work<T, M>, factor: Factor<T, Self>) {
-        if let Some(link) = work.link_mut() {
-            link.factor = factor;
-        }
-    }
-
-    fn factor<M: Model<T>>(work: &Work<T, M>) -> Factor<T, Self> {
-        work.link().map_or_else(Factor::default, |link| link.factor)
+    fn factor<M: Model<T>>(work: &mut Work<T, M>) -> Option<&mut Factor<T, Self>> {
+        work.link_mut().map(|link| &mut link.factor)
     }
 }
 
@@ -226,14 +222,15 @@ impl<T: Real, M: Model<T>> System<'_, T, M> {
                 part = part.shift(B::of(element.gap.kink::<T>()));
             }
             let absorbed = if i == 0 { left.join(&part, &stamp, h) } else { part.absorb(&stamp, h) };
-            let (next, factor) = absorbed.ok_or(SensitivityError::Breakdown { element: i })?;
-            part = next;
-            B::keep(work, factor);
+            let Some((absorbed, room)) = absorbed.zip(B::factor(work)) else {
+                return Err(SensitivityError::Breakdown { element: i });
+            };
+            (part, *room) = absorbed;
         }
         let breakdown = SensitivityError::Breakdown { element: n - 1 };
         let mut near = right.close(&part).ok_or(breakdown)?;
         for Place { element, work } in self.places.iter_mut().rev() {
-            let (e, far) = B::factor(work).substitute(near, element.h);
+            let (e, far) = B::factor(work).ok_or(breakdown)?.substitute(near, element.h);
             let (e, d) = (B::pair(e), B::pair(near));
             if !(d.x().is_finite() && d.y().is_finite()) {
                 return Err(breakdown);
@@ -381,25 +378,6 @@ impl<T: Real, M: Model<T>> System<'_, T, M> {
     }
 }
 
-/// The load of an element on (e, d).
-fn load<T: Real, M: Model<T>>(
-    view: &Solution<'_, T, M>,
-    solved: &Solved<'_, T, M>,
-    task: Task<T>,
-    i: usize,
-    [near, far]: [[T; 4]; 2],
-) -> (T::Vec2, T::Vec2) {
-    match task {
-        Task::Rates(along) => {
-            let (left, right) = (Flow::of(near), Flow::of(far));
-            let by = Variation { left, right, ..Variation::default() };
-            let (e, d) = Rate::new(solved, i, along, by).residual();
-            (-e, -d)
-        }
-        Task::Weights(output) => load_of_output(view, solved, i, output, far),
-    }
-}
-
 /// Gap and its slope at both ends.
 fn ends_of_gap<T: Real, M: Model<T>>(view: &Solution<'_, T, M>) -> [T::Vec2; 2] {
     let gap = view.scene.foundation().gap;
@@ -420,7 +398,8 @@ pub(super) fn held_by_gap<T: Real, M: Model<T>>(view: &Solution<'_, T, M>, outpu
         let solved = view.solved(i);
         let by = Variation { e, d, ..Variation::default() };
         let (on_e, on_d) = Rate::new(&solved, i, Direction::rest(), by).residual();
-        let (e, d) = load_of_output(view, &solved, i, output, kept(view.places, i));
+        let far = kept(view.places, i);
+        let (e, d) = load(view, &solved, Task::Weights(output), i, [far; 2]);
         (on_e - e, on_d - d, solved.element.h)
     };
     let [from, to] = ends_of_gap(view);
