@@ -9,7 +9,7 @@ use crate::certificate::{self, Uniqueness, Warning};
 use crate::cubic::Cubic;
 use crate::electric::{self, Ratio};
 use crate::element::Element;
-use crate::element::contact::{Contact, law_splits, parts};
+use crate::element::contact::{Contact, Fault, law_splits, parts};
 use crate::element::hermite::Motion;
 use crate::element::linear::{Inverse, invert};
 use crate::law::{Compliance, truncate, truncate_positive};
@@ -309,7 +309,8 @@ impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
         };
         // A state without a converged law may not be linearised: then the law's force is left out, as the
         // status says.
-        let (force, _) = Contact::at(self.scene, element, &motion, || q, T::one())
+        let (force, _) = solved
+            .contact()
             .map_or_else(|_| (T::Vec2::default(), T::Vec2::default()), |c| c.force(&motion, element.h));
         solved.held = element.bending.times(solved.bend()) + force - element.fe;
         solved
@@ -320,6 +321,11 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
     /// Relative unknowns of xi itself.
     pub(crate) fn bend(&self) -> T::Vec2 {
         if M::Gap::PRESENT { self.motion.e + self.element.gap.bend::<T>() } else { self.motion.e }
+    }
+
+    /// The contact, linearised at this state.
+    pub(crate) fn contact(&self) -> Result<Contact<T>, Fault> {
+        Contact::at(self.scene, self.element, &self.motion, || self.q, T::one())
     }
 
     pub(crate) fn t(&self, x: T) -> T {

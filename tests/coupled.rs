@@ -3,82 +3,12 @@
 
 mod common;
 
+use common::strong::{Numbers, numbers};
 use common::{fields, named, points, relative, solved, tolerances as tol};
-use piezobeam::{
-    Beam, Conduction, Foundation, Linear, Load, Mesh, Polynomial, Potential, Scene, Status, Steps,
-};
+use piezobeam::{Conduction, Foundation, Linear, Load, Mesh, Polynomial, Potential, Scene, Status, Steps};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
-
-/// A scene with everything, by its numbers.
-#[derive(Clone, Debug)]
-struct Numbers {
-    elements: usize,
-    beam: Beam<f64, f64, f64, f64>,
-    mu: [f64; 2],
-    truncation: f64,
-    potential_truncation: f64,
-    stiffness: f64,
-    /// Height of the gap's bump.
-    gap: f64,
-    /// Where the load steps, and its values.
-    step: [f64; 1],
-    load: [f64; 2],
-    ends: [f64; 2],
-}
-
-prop_compose! {
-    /// 10^x, x between the bounds.
-    fn powers(low: f64, high: f64)(x in low..high) -> f64 {
-        10f64.powf(x)
-    }
-}
-
-prop_compose! {
-    fn signed(low: f64, high: f64)(size in powers(low, high), up in any::<bool>()) -> f64 {
-        if up { size } else { -size }
-    }
-}
-
-prop_compose! {
-    /// A beam and how far past the condition (2.15) it is: `past` times.
-    fn numbers()(
-        elements in powers(0.903, 3.3),
-        bending in powers(-3.0, 5.0),
-        axial in powers(0.0, 8.0),
-        permittivity in powers(-6.0, 2.0),
-        piezo in prop_oneof![Just(0.0), signed(-2.0, 2.0)],
-        truncation in powers(-2.0, 0.0),
-        larger in prop_oneof![Just(1.0), powers(0.0, 4.0)],
-        past in powers(-0.5, 2.0),
-        ratio in powers(-2.0, 2.0),
-        stiffness in prop_oneof![Just(0.0), powers(-2.0, 12.0)],
-        gap in prop_oneof![Just(0.0), signed(-3.0, 0.0)],
-        step in prop::array::uniform1(0.02..0.98_f64),
-        size in powers(-2.0, 1.5),
-        load in prop::array::uniform2(signed(-1.0, 0.0)),
-        ends in prop::array::uniform2(signed(-1.0, 1.5)),
-    ) -> Numbers {
-        let potential_truncation = truncation * larger;
-        let (c1, c2) = (1.0 / core::f64::consts::PI, (1.0 / 4.730_040_744_862_704_f64).powi(2));
-        let by_bending = bending / c2 / c2 / (potential_truncation + 0.5 * truncation + ratio * truncation);
-        let by_permittivity = permittivity / c1 / c1 / (0.5 * truncation + ratio * truncation);
-        let mu1 = past * by_bending.min(by_permittivity);
-        Numbers {
-            elements: elements as usize,
-            beam: Beam { bending, axial, piezo: piezo * (axial * permittivity).sqrt(), permittivity },
-            mu: [mu1, ratio * mu1],
-            truncation,
-            potential_truncation,
-            stiffness: stiffness * bending,
-            gap: gap * truncation,
-            step,
-            load: load.map(|f| 384.0 * bending * truncation * size * f),
-            ends: ends.map(|q| q * potential_truncation),
-        }
-    }
-}
 
 /// Status and visits per element of a scene, whose fields have to be numbers and whose foundation may not pull.
 fn outcome(n: &Numbers, mu2: f64) -> Result<(Status, f64), TestCaseError> {
@@ -115,12 +45,12 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 500, ..ProptestConfig::default() })]
 
     #[test]
-    fn two_way_conduction_far_past_uniqueness_converges(n in numbers()) {
+    fn two_way_conduction_far_past_uniqueness_converges(n in numbers(2.0)) {
         prop_assert_eq!(outcome(&n, n.mu[1])?.0, Status::Converged);
     }
 
     #[test]
-    fn a_foundation_that_attracts_by_a_frozen_potential_converges(n in numbers()) {
+    fn a_foundation_that_attracts_by_a_frozen_potential_converges(n in numbers(2.0)) {
         prop_assert_eq!(outcome(&n, 0.0)?.0, Status::Converged);
     }
 }
@@ -134,7 +64,7 @@ fn visits_of_scenes_far_past_uniqueness() {
     for (what, frozen) in [("both ways", false), ("frozen potential", true)] {
         let mut visits: Vec<f64> = (0..5000)
             .map(|_| {
-                let n = numbers().new_tree(&mut runner).expect("numbers").current();
+                let n = numbers(2.0).new_tree(&mut runner).expect("numbers").current();
                 let (status, visits) = outcome(&n, if frozen { 0.0 } else { n.mu[1] }).expect("a scene");
                 assert_eq!(status, Status::Converged);
                 visits

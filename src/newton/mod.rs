@@ -945,7 +945,7 @@ fn potential<T: Real, M: Model<T>>(
 
 /// The contact of an element in one of its states, and that state's motion.
 #[inline(always)]
-pub(crate) fn linearise<T: Real, M: Model<T>>(
+fn linearise<T: Real, M: Model<T>>(
     model: &M,
     element: &Element<T, M>,
     work: &Work<T, M>,

@@ -8,9 +8,10 @@
 //! ```
 //!
 //! and weights the transposed, in the opposite order. A is symmetric: one recursion serves both. Without
-//! conduction in both directions one of the two is known first and one sweep solves the system. With it the two
-//! are taken in turn until nothing changes, the fixed point that the solve itself ends with;
-//! [`System::solve`] is the one place that does so.
+//! conduction in both directions one of the two is known first and one sweep of bending solves the system. With
+//! it d(eta) moves the potential that loads it, and that part of u and q is among the sweep's unknowns
+//! ([`crate::element::coupled`]); what u and q do while bending rests is a load, as it is in one direction. So
+//! the order is always the same: the fluxes while bending rests, one sweep of bending, the fluxes again.
 //!
 //! Nothing is allocated: rates of (e, d) go where the solve keeps its spare state, rates at nodes into the room of
 //! the elements' factors, which are spent after back substitution. The solution stays as it is.
@@ -19,16 +20,17 @@ use super::rate::{Direction, Flow, Rate, Variation, charging, conduction};
 use super::{Output, Parameter, SensitivityError};
 use crate::electric::{self, Ratio, Reach};
 use crate::element::contact::Fault;
+use crate::element::coupled::Coupling;
 use crate::element::hermite::Motion;
-use crate::newton::linearise;
 use crate::newton::nested::Answer;
 use crate::profile::{Profile, Smooth};
-use crate::real::{Pair, Real, Sum};
+use crate::real::{Pair, Quad, Real, Sum};
 use crate::scene::Model;
-use crate::solution::Solution;
-use crate::storage::{Place, State};
+use crate::solution::{Solution, Solved};
+use crate::storage::{Place, State, Work};
 use crate::sweep::pair::Bending;
-use crate::sweep::{Block, Condensed, End};
+use crate::sweep::quad::Coupled;
+use crate::sweep::{Block, Condensed, End, Factor, Stamp};
 
 /// What the system is solved for.
 #[derive(Clone, Copy, Debug)]
@@ -38,9 +40,6 @@ pub(super) enum Task<T> {
     /// The weights in an output.
     Weights(Output<T>),
 }
-
-/// Rounds of the fixed point at most, where bending and potential act on each other.
-const ROUNDS: usize = 400;
 
 /// A solved scene, whose tangent can be swept.
 pub(super) struct System<'p, T: Real, M: Model<T>> {
@@ -74,26 +73,89 @@ pub(super) fn variation<T: Real, M: Model<T>>(
     Variation { e, d, left: Flow::of(near), right: Flow::of(kept(view.places, i)) }
 }
 
-/// The weights of the penetration's rates in element i: in the output itself, and by way of the current.
-pub(super) fn load_of_output<T: Real, M: Model<T>>(
+/// The load of element i on (e, d), where the fluxes' rates or weights are `near` and `far`.
+fn load<T: Real, M: Model<T>>(
     view: &Solution<'_, T, M>,
+    solved: &Solved<'_, T, M>,
+    task: Task<T>,
     i: usize,
-    output: Output<T>,
-    flux: [T; 4],
+    [near, far]: [[T; 4]; 2],
 ) -> (T::Vec2, T::Vec2) {
-    let solved = view.solved(i);
-    let (mut e, mut d) = (T::Vec2::default(), T::Vec2::default());
-    if output.concerns(view, i) {
-        let weights = Rate::weights(&solved, i, output);
-        (e, d) = (weights.e, weights.d);
+    match task {
+        Task::Rates(along) => {
+            let (left, right) = (Flow::of(near), Flow::of(far));
+            let by = Variation { left, right, ..Variation::default() };
+            let (e, d) = Rate::new(solved, i, along, by).residual();
+            (-e, -d)
+        }
+        // What the penetration weighs in the output itself, and by way of the current.
+        Task::Weights(output) => {
+            let [m_u, m_q, _, r] = far;
+            let (mut e, mut d) = charging(solved, [m_u, m_q, r]);
+            if output.concerns(view, i) {
+                let weights = Rate::weights(solved, i, output);
+                (e, d) = (e + weights.e, d + weights.d);
+            }
+            (e, d)
+        }
     }
-    if M::Mu2::PRESENT {
-        let [m_u, m_q, _, r] = flux;
-        let (more_e, more_d) = charging(&solved, [m_u, m_q, r]);
-        e += more_e;
-        d += more_d;
+}
+
+/// The unknowns of a sweep: those of bending, or these with u and q.
+trait Swept<T: Real>: Block<T> {
+    /// All of a node's unknowns are held.
+    const ALL: Self::Held;
+
+    fn of(pair: T::Vec2) -> Self::Vector;
+    fn pair(v: Self::Vector) -> T::Vec2;
+    /// The element's tangent, or its transposed.
+    fn stamp<M: Model<T>>(solved: &Solved<'_, T, M>, transposed: bool) -> Result<Stamp<T, Self>, Fault>;
+    /// Where the element's factor is kept, which there is wherever u and q are swept.
+    fn factor<M: Model<T>>(work: &mut Work<T, M>) -> Option<&mut Factor<T, Self>>;
+}
+
+impl<T: Real> Swept<T> for Bending {
+    const ALL: [bool; 2] = [true; 2];
+
+    fn of(pair: T::Vec2) -> T::Vec2 {
+        pair
     }
-    (e, d)
+
+    fn pair(v: T::Vec2) -> T::Vec2 {
+        v
+    }
+
+    fn stamp<M: Model<T>>(solved: &Solved<'_, T, M>, _: bool) -> Result<Stamp<T, Self>, Fault> {
+        Ok(solved.contact()?.stamp(solved.element))
+    }
+
+    fn factor<M: Model<T>>(work: &mut Work<T, M>) -> Option<&mut Factor<T, Self>> {
+        Some(&mut work.factor)
+    }
+}
+
+impl<T: Real> Swept<T> for Coupled {
+    const ALL: [bool; 4] = [true; 4];
+
+    fn of(pair: T::Vec2) -> T::Vec4 {
+        T::Vec4::of([pair.x(), pair.y(), T::zero(), T::zero()])
+    }
+
+    fn pair(v: T::Vec4) -> T::Vec2 {
+        let [w, theta, ..] = v.array();
+        T::Vec2::of(w, theta)
+    }
+
+    fn stamp<M: Model<T>>(solved: &Solved<'_, T, M>, transposed: bool) -> Result<Stamp<T, Self>, Fault> {
+        let Solved { scene, element, eta, q, .. } = solved;
+        let stamp =
+            Coupling::at(*scene, element, eta, q).stamp(element, &solved.contact()?, T::Vec2::default());
+        Ok(if transposed { stamp.turned() } else { stamp })
+    }
+
+    fn factor<M: Model<T>>(work: &mut Work<T, M>) -> Option<&mut Factor<T, Self>> {
+        work.link_mut().map(|link| &mut link.factor)
+    }
 }
 
 impl<T: Real, M: Model<T>> System<'_, T, M> {
@@ -105,7 +167,7 @@ impl<T: Real, M: Model<T>> System<'_, T, M> {
     pub(super) fn solve(&mut self, task: Task<T>) -> Result<(), SensitivityError> {
         let onto = electric::conducts_onto(self.places);
         let into = electric::conducts_into(self.places);
-        // What the first sweep needs of the fluxes, while bending rests.
+        // What the sweep needs of the fluxes, while bending rests.
         let first = match task {
             Task::Rates(_) => onto,
             Task::Weights(_) => into,
@@ -113,23 +175,9 @@ impl<T: Real, M: Model<T>> System<'_, T, M> {
         if first {
             self.fluxes(task, false);
         }
-        let mut last = T::infinity();
-        for round in 0..ROUNDS {
-            let change = self.bend(task, first)?;
-            self.fluxes(task, true);
-            if !(onto && into) || change == T::zero() {
-                return Ok(());
-            }
-            // What is left is about change^2 / last; at rounding changes stop to fall. The first change is from
-            // nothing.
-            let settled = round > 1 && change * change <= T::of(0.125) * T::epsilon() * last;
-            let small = round > 0 && change <= T::of(1024.0) * T::epsilon();
-            if settled || (small && change >= T::of(0.5) * last) {
-                return Ok(());
-            }
-            last = change;
-        }
-        Err(SensitivityError::Coupling)
+        if onto && into { self.bend::<Coupled>(task, first) } else { self.bend::<Bending>(task, first) }?;
+        self.fluxes(task, true);
+        Ok(())
     }
 
     fn fluxes(&mut self, task: Task<T>, moving: bool) {
@@ -142,74 +190,55 @@ impl<T: Real, M: Model<T>> System<'_, T, M> {
         }
     }
 
-    /// One sweep of bending over all elements; how much the answer changed, relative to its largest.
-    fn bend(&mut self, task: Task<T>, flowing: bool) -> Result<T, SensitivityError> {
-        let (zero, n) = (T::zero(), self.places.len());
-        let answer = self.answer;
-        let spare = 1 - answer.state;
-        let ratio = Ratio::of(&self.places[0].element);
-        let onto = electric::conducts_onto(self.places).then_some(ratio);
+    /// One sweep of bending over all elements.
+    fn bend<B: Swept<T>>(&mut self, task: Task<T>, flowing: bool) -> Result<(), SensitivityError> {
+        let n = self.places.len();
+        let spare = 1 - self.answer.state;
+        let transposed = matches!(task, Task::Weights(_));
         // The gap moves the penetration at the clamps, and its kinks.
         let with_gap = matches!(task, Task::Rates(along) if along.parameter == Some(Parameter::Gap));
-        let (mut left, mut right) = (clamp(), clamp());
+        let clamp = End { held: B::ALL, value: B::Vector::default(), condensed: Condensed::default() };
+        let (mut left, mut right) = (clamp, clamp);
         if M::Gap::PRESENT && with_gap {
             let [from, to] = ends_of_gap(&self.view());
-            (left.value, right.value) = (-from, -to);
+            (left.value, right.value) = (B::of(-from), B::of(-to));
         }
-        let mut part: Condensed<T, Bending> = left.condensed;
-        let (mut near, mut node) = (self.left, answer.left);
+        let mut part: Condensed<T, B> = left.condensed;
+        let mut near = self.left;
         for i in 0..n {
             let far = kept(self.places, i);
-            let flows = if flowing { [near, far] } else { [[zero; 4]; 2] };
-            let (fe, fr) = self.load(task, i, flows);
+            let flows = if flowing { [near, far] } else { [[T::zero(); 4]; 2] };
             near = far;
+            let view = self.view();
+            let solved = view.solved(i);
+            let mut stamp = B::stamp(&solved, transposed).map_err(|fault| match fault {
+                Fault::NotFinite | Fault::NotMonotone => SensitivityError::Law { element: i },
+            })?;
+            let (fe, fr) = load(&view, &solved, task, i, flows);
+            (stamp.fe, stamp.fr) = (B::of(fe), B::of(fr));
             let Place { element, work } = &mut self.places[i];
             let h = element.h;
-            let (contact, _) = linearise(self.scene, element, work, &node, answer.state, &onto, T::one())
-                .map_err(|fault| match fault {
-                    Fault::NotFinite | Fault::NotMonotone => SensitivityError::Law { element: i },
-                })?;
-            node = work.node;
-            let mut stamp = contact.stamp(element);
-            (stamp.fe, stamp.fr) = (fe, fr);
             if M::Gap::PRESENT && with_gap {
-                part = part.shift(element.gap.kink::<T>());
+                part = part.shift(B::of(element.gap.kink::<T>()));
             }
             let absorbed = if i == 0 { left.join(&part, &stamp, h) } else { part.absorb(&stamp, h) };
-            (part, work.factor) = absorbed.ok_or(SensitivityError::Breakdown { element: i })?;
+            let Some((absorbed, room)) = absorbed.zip(B::factor(work)) else {
+                return Err(SensitivityError::Breakdown { element: i });
+            };
+            (part, *room) = absorbed;
         }
         let breakdown = SensitivityError::Breakdown { element: n - 1 };
-        let mut d = right.close(&part).ok_or(breakdown)?;
-        let (mut change, mut size) = (zero, zero);
-        let length = self.scene.length();
+        let mut near = right.close(&part).ok_or(breakdown)?;
         for Place { element, work } in self.places.iter_mut().rev() {
-            let (e, far) = work.factor.substitute(d, element.h);
-            let before = work.states[spare].d;
-            for (now, before, lever) in [(d.x(), before.x(), T::one()), (d.y(), before.y(), length)] {
-                change = change.max((now - before).abs() * lever);
-                size = size.max(now.abs() * lever);
-                if !now.is_finite() {
-                    return Err(breakdown);
-                }
+            let (e, far) = B::factor(work).ok_or(breakdown)?.substitute(near, element.h);
+            let (e, d) = (B::pair(e), B::pair(near));
+            if !(d.x().is_finite() && d.y().is_finite()) {
+                return Err(breakdown);
             }
             work.states[spare] = State { e, d };
-            d = if M::Gap::PRESENT && with_gap { far + element.gap.kink::<T>() } else { far };
+            near = if M::Gap::PRESENT && with_gap { far + B::of(element.gap.kink::<T>()) } else { far };
         }
-        Ok(if change == zero { zero } else { change / size })
-    }
-
-    /// The load of an element on (e, d).
-    fn load(&self, task: Task<T>, i: usize, [near, far]: [[T; 4]; 2]) -> (T::Vec2, T::Vec2) {
-        let view = self.view();
-        match task {
-            Task::Rates(along) => {
-                let (left, right) = (Flow::of(near), Flow::of(far));
-                let by = Variation { left, right, ..Variation::default() };
-                let (e, d) = Rate::new(&view.solved(i), i, along, by).residual();
-                (-e, -d)
-            }
-            Task::Weights(output) => load_of_output(&view, i, output, far),
-        }
+        Ok(())
     }
 
     /// Rates of u, q and the fluxes: the sums of [`electric::solve`] with their derivatives for loads.
@@ -349,11 +378,6 @@ impl<T: Real, M: Model<T>> System<'_, T, M> {
     }
 }
 
-/// An end whose rates are zero.
-fn clamp<T: Real>() -> End<T, Bending> {
-    End { held: [true, true], value: T::Vec2::default(), condensed: Condensed::default() }
-}
-
 /// Gap and its slope at both ends.
 fn ends_of_gap<T: Real, M: Model<T>>(view: &Solution<'_, T, M>) -> [T::Vec2; 2] {
     let gap = view.scene.foundation().gap;
@@ -374,7 +398,8 @@ pub(super) fn held_by_gap<T: Real, M: Model<T>>(view: &Solution<'_, T, M>, outpu
         let solved = view.solved(i);
         let by = Variation { e, d, ..Variation::default() };
         let (on_e, on_d) = Rate::new(&solved, i, Direction::rest(), by).residual();
-        let (e, d) = load_of_output(view, i, output, kept(view.places, i));
+        let far = kept(view.places, i);
+        let (e, d) = load(view, &solved, Task::Weights(output), i, [far; 2]);
         (on_e - e, on_d - d, solved.element.h)
     };
     let [from, to] = ends_of_gap(view);

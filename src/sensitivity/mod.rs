@@ -140,8 +140,6 @@ pub enum SensitivityError {
         /// The length found.
         found: usize,
     },
-    /// Bending and potential act on each other too strongly for their rates to be found in turn.
-    Coupling,
     /// A pivot of the tangent is singular or not finite: the solution is at a turning point.
     Breakdown {
         /// Element, counted from 0.
@@ -167,11 +165,6 @@ impl fmt::Display for SensitivityError {
             Self::Length { expected, found } => {
                 write!(f, "expected room for {expected} derivatives, found {found}")
             }
-            Self::Coupling => write!(
-                f,
-                "bending and potential act on each other too strongly for their derivatives to be found in \
-                 turn; they can be for smaller mu1 or mu2"
-            ),
             Self::Breakdown { element } => write!(
                 f,
                 "the tangent is singular or not finite in element {element}: the solution has no derivative"
@@ -239,13 +232,9 @@ impl<T: Real> Output<T> {
         }
     }
 
-    /// Does the output depend on what happens in element i, by itself?
-    fn concerns<M: Model<T>>(self, view: &Solution<'_, T, M>, i: usize) -> bool {
-        let last = view.places.len() - 1;
+    /// Where the output looks; `None` where that is everywhere.
+    fn place(self, length: T) -> Option<T> {
         match self {
-            Self::ContactForce => true,
-            Self::LeftForce | Self::LeftMoment => i == 0,
-            Self::RightForce | Self::RightMoment => i == last,
             Self::Bending(x)
             | Self::Slope(x)
             | Self::Moment(x)
@@ -253,11 +242,18 @@ impl<T: Real> Output<T> {
             | Self::Stretching(x)
             | Self::Potential(x)
             | Self::AxialForce(x)
-            | Self::ElectricDisplacement(x) => {
-                let right = |i: usize| view.places[i].element.right;
-                (i == 0 || right(i - 1) < x) && (i == last || x <= right(i))
-            }
+            | Self::ElectricDisplacement(x) => Some(x),
+            Self::LeftForce | Self::LeftMoment => Some(T::zero()),
+            Self::RightForce | Self::RightMoment => Some(length),
+            Self::ContactForce => None,
         }
+    }
+
+    /// Does the output depend on what happens in element i, by itself?
+    fn concerns<M: Model<T>>(self, view: &Solution<'_, T, M>, i: usize) -> bool {
+        let right = |i: usize| view.places[i].element.right;
+        self.place(view.scene.length())
+            .is_none_or(|x| (i == 0 || right(i - 1) < x) && (i + 1 == view.places.len() || x <= right(i)))
     }
 }
 
@@ -300,22 +296,12 @@ impl<T: Real, M: Model<T>> Tangent<'_, T, M> {
             let by = variation(&self.view, i, self.left);
             Rate::new(&self.view.solved(i), i, self.along, by).output(output)
         };
-        let last = self.view.places.len() - 1;
-        let mut sum = Sum::<T>::default();
-        match output {
-            Output::ContactForce => (0..=last).for_each(|i| sum.add(of(i))),
-            Output::LeftForce | Output::LeftMoment => sum.add(of(0)),
-            Output::RightForce | Output::RightMoment => sum.add(of(last)),
-            Output::Bending(x)
-            | Output::Slope(x)
-            | Output::Moment(x)
-            | Output::Shear(x)
-            | Output::Stretching(x)
-            | Output::Potential(x)
-            | Output::AxialForce(x)
-            | Output::ElectricDisplacement(x) => sum.add(of(element_at(&self.view, x))),
-        }
-        Some(sum.value())
+        let Some(x) = output.place(self.view.scene.length()) else {
+            let mut sum = Sum::<T>::default();
+            (0..self.view.places.len()).for_each(|i| sum.add(of(i)));
+            return Some(sum.value());
+        };
+        Some(of(element_at(&self.view, x)))
     }
 
     /// The solution at which the derivative was taken.
@@ -418,8 +404,9 @@ impl<T: Real, M: Model<T>> Prepared<'_, T, M> {
     /// No converged solution, no such parameter, or no derivative.
     ///
     /// # Cost
-    /// One linear sweep over the mesh and two passes for the potential; with conduction in both directions as
-    /// many as their fixed point takes. No allocation: the memory of the sweeps is used, the solution stays.
+    /// One linear sweep over the mesh, with conduction in both directions that of the coupled system, and two
+    /// passes for the potential, four where bending depends on it. No allocation: the memory of the sweeps is
+    /// used, the solution stays.
     pub fn tangent(&mut self, parameter: Parameter<T>) -> Result<Tangent<'_, T, M>, SensitivityError> {
         let mut system = self.system()?;
         if !parameter.is_in(system.scene) {
@@ -443,7 +430,6 @@ impl<T: Real, M: Model<T>> Prepared<'_, T, M> {
         if !output.is_in(system.scene) {
             return Err(SensitivityError::Absent);
         }
-        let output = output.inside(system.scene.length());
         system.solve(Task::Weights(output))?;
         let System { scene, places, answer, ends, .. } = system;
         Ok(Adjoint { view: Solution::new(scene, places, answer), output, ends })
@@ -519,23 +505,5 @@ impl<T: Real, M: Model<T>> Prepared<'_, T, M> {
         let elements = self.elements();
         let places = &mut self.places[..elements];
         Ok(System { scene: self.scene, places, answer, left: [T::zero(); 4], ends: [T::zero(); 2] })
-    }
-}
-
-impl<T: Real> Output<T> {
-    /// The output with its x moved into [0, L].
-    fn inside(self, length: T) -> Self {
-        let at = |x: T| x.max(T::zero()).min(length);
-        match self {
-            Self::Bending(x) => Self::Bending(at(x)),
-            Self::Slope(x) => Self::Slope(at(x)),
-            Self::Moment(x) => Self::Moment(at(x)),
-            Self::Shear(x) => Self::Shear(at(x)),
-            Self::Stretching(x) => Self::Stretching(at(x)),
-            Self::Potential(x) => Self::Potential(at(x)),
-            Self::AxialForce(x) => Self::AxialForce(at(x)),
-            Self::ElectricDisplacement(x) => Self::ElectricDisplacement(at(x)),
-            other => other,
-        }
     }
 }

@@ -18,6 +18,7 @@ use crate::real::{Pair, Real};
 use crate::scene::Model;
 use crate::solution::{Fields, Solved};
 use crate::storage::Node;
+use core::array::from_fn;
 
 /// Rates at a node: u, q, tau and D; or the weights of these in an output.
 #[derive(Clone, Copy, Debug, Default)]
@@ -180,24 +181,6 @@ impl<'a, 's, T: Real, M: Model<T>> Rate<'a, 's, T, M> {
         [p, drive]
     }
 
-    /// Moments over t, in the powers 0 to 3, of a force per length, between the kinks of the forces.
-    fn moments(&self, mut force: impl FnMut(T) -> T) -> [T; 4] {
-        let mut moments = [T::zero(); 4];
-        let mut splits = self.solved.splits.clone();
-        for (from, to) in parts(&mut splits) {
-            let length = to - from;
-            for (z, weight) in gauss::<POINTS>() {
-                let t = from + length * T::of(z);
-                let mut part = T::of(weight) * length * force(t);
-                for moment in &mut moments {
-                    *moment = *moment + part;
-                    part = part * t;
-                }
-            }
-        }
-        moments
-    }
-
     /// Rate of the residual on (e, d): internal less external forces.
     pub(super) fn residual(&self) -> (T::Vec2, T::Vec2) {
         let solved = self.solved;
@@ -213,7 +196,7 @@ impl<'a, 's, T: Real, M: Model<T>> Rate<'a, 's, T, M> {
         if M::Law::PRESENT || M::Mu1::PRESENT {
             let (e, d) = work::<T>(
                 h,
-                self.moments(|t| {
+                moments(solved, |t| {
                     let [p, drive] = self.forces(t);
                     p + drive
                 }),
@@ -404,7 +387,7 @@ impl<'a, 's, T: Real, M: Model<T>> Rate<'a, 's, T, M> {
                 self.solved.ratio.sigma(tau, charge)
             }
             Output::ElectricDisplacement(x) => self.fluxes(t(x)).1,
-            Output::ContactForce => h * self.moments(|t| self.forces(t)[0])[0],
+            Output::ContactForce => h * moments(self.solved, |t| self.forces(t)[0])[0],
             Output::LeftForce => self.residual().0.x(),
             Output::LeftMoment => -self.residual().0.y(),
             Output::RightForce => {
@@ -426,18 +409,14 @@ impl<'a, 's, T: Real, M: Model<T>> Rate<'a, 's, T, M> {
             source = Source { load: axial.total, u: -axial.stretch, q: axial.charge, ..source };
         }
         if conducts_into(element) {
-            // The same points and weights as those of `conduction`, of which this is the transposed.
-            let mut splits = solved.splits.clone();
-            for (from, to) in parts(&mut splits) {
-                for (z, weight) in gauss::<POINTS>() {
-                    let t = from + (to - from) * T::of(z);
-                    let part = h * (T::of(weight) * (to - from)) * self.current(t);
-                    let (stretch, charge) = element.flexibility.integral(t);
-                    source.current = source.current + part;
-                    source.u = source.u - h * part * stretch;
-                    source.q = source.q - h * part * charge;
-                }
-            }
+            // The same points and weights as those of `charging`, of which this is the transposed.
+            quadrature(solved, |t, weight| {
+                let part = h * weight * self.current(t);
+                let (stretch, charge) = element.flexibility.integral(t);
+                source.current = source.current + part;
+                source.u = source.u - h * part * stretch;
+                source.q = source.q - h * part * charge;
+            });
         }
         if self.softens() {
             let softening = |t: T| {
@@ -458,7 +437,7 @@ impl<'a, 's, T: Real, M: Model<T>> Rate<'a, 's, T, M> {
             // The force depends on the penetration alone, and is its own gradient's integral.
             let ones = Cubic([one, zero, zero, zero]);
             let unit = Rate { eta: ones, ..Rate::new(solved, i, rest, Variation::default()) };
-            let (e, d) = work::<T>(solved.element.h, unit.moments(|t| unit.forces(t)[0]));
+            let (e, d) = work::<T>(solved.element.h, moments(solved, |t| unit.forces(t)[0]));
             return Variation { e, d, ..Variation::default() };
         }
         // Everything is linear: unit rates give the weights.
@@ -471,17 +450,35 @@ impl<'a, 's, T: Real, M: Model<T>> Rate<'a, 's, T, M> {
             ..Variation::default()
         };
         if M::Axial::PRESENT || M::Permittivity::PRESENT {
-            let (mut left, mut right) = ([zero; 4], [zero; 4]);
-            for j in 0..4 {
-                let mut unit = [zero; 4];
-                unit[j] = one;
-                left[j] = of(Variation { left: Flow::of(unit), ..Variation::default() });
-                right[j] = of(Variation { right: Flow::of(unit), ..Variation::default() });
-            }
-            (weights.left, weights.right) = (Flow::of(left), Flow::of(right));
+            let unit = |j: usize| Flow::of(from_fn(|i| if i == j { one } else { zero }));
+            weights.left = Flow::of(from_fn(|j| of(Variation { left: unit(j), ..Variation::default() })));
+            weights.right = Flow::of(from_fn(|j| of(Variation { right: unit(j), ..Variation::default() })));
         }
         weights
     }
+}
+
+/// Shows the points over t, and their weights, of a quadrature between the kinks of the forces.
+fn quadrature<T: Real, M: Model<T>>(solved: &Solved<'_, T, M>, mut see: impl FnMut(T, T)) {
+    let mut splits = solved.splits.clone();
+    for (from, to) in parts(&mut splits) {
+        for (z, weight) in gauss::<POINTS>() {
+            see(from + (to - from) * T::of(z), T::of(weight) * (to - from));
+        }
+    }
+}
+
+/// Moments over t, in the powers 0 to 3, of a force per length.
+fn moments<T: Real, M: Model<T>>(solved: &Solved<'_, T, M>, mut force: impl FnMut(T) -> T) -> [T; 4] {
+    let mut moments = [T::zero(); 4];
+    quadrature(solved, |t, weight| {
+        let mut part = weight * force(t);
+        for moment in &mut moments {
+            *moment = *moment + part;
+            part = part * t;
+        }
+    });
+    moments
 }
 
 /// Does mu2 act in the element?
@@ -517,18 +514,14 @@ pub(super) fn conduction<T: Real, M: Model<T>>(
         Cubic::hermite(zero, zero, zero, one),
     ];
     let mut weights = [zero; 4];
-    let mut splits = solved.splits.clone();
-    for (from, to) in parts(&mut splits) {
-        for (z, weight) in gauss::<POINTS>() {
-            let t = from + (to - from) * T::of(z);
-            let depth = truncate_positive(solved.eta.at(t), bounds.truncation).0;
-            let slope = truncate(solved.q.at(t), bounds.potential_truncation).1;
-            let part = element.h * (T::of(weight) * (to - from)) * element.mu1.at(t) * slope * depth;
-            for (weight, shape) in weights.iter_mut().zip(&shapes) {
-                *weight = *weight - part * lambda.at(t) * shape.at(t);
-            }
+    quadrature(solved, |t, weight| {
+        let depth = truncate_positive(solved.eta.at(t), bounds.truncation).0;
+        let slope = truncate(solved.q.at(t), bounds.potential_truncation).1;
+        let part = element.h * weight * element.mu1.at(t) * slope * depth;
+        for (weight, shape) in weights.iter_mut().zip(&shapes) {
+            *weight = *weight - part * lambda.at(t) * shape.at(t);
         }
-    }
+    });
     let slope = |t: T, weight: T| {
         let k = element.flexibility.at(t);
         let by = |tau, charge| -(element.h * weight * solved.ratio.gradients::<M>(&k, tau, charge).1);
@@ -547,24 +540,15 @@ pub(super) fn charging<T: Real, M: Model<T>>(
     [m_u, m_q, r]: [T; 3],
 ) -> (T::Vec2, T::Vec2) {
     let (h, element) = (solved.element.h, solved.element);
-    let mut moments = [T::zero(); 4];
-    if conducts_into(element) {
-        let bound = solved.scene.conduction().truncation;
-        let mut splits = solved.splits.clone();
-        for (from, to) in parts(&mut splits) {
-            for (z, weight) in gauss::<POINTS>() {
-                let t = from + (to - from) * T::of(z);
-                let (depth, slope) = truncate_positive(solved.eta.at(t), bound);
-                let (stretch, charge) = element.flexibility.integral(t);
-                let worth = r + h * (m_u * stretch + m_q * charge);
-                let current = element.mu2.at(t) * (T::of(2.0) * depth * slope);
-                let mut part = T::of(weight) * (to - from) * current * worth;
-                for moment in &mut moments {
-                    *moment = *moment + part;
-                    part = part * t;
-                }
-            }
-        }
+    if !conducts_into(element) {
+        return (T::Vec2::default(), T::Vec2::default());
     }
-    work::<T>(h, moments)
+    let bound = solved.scene.conduction().truncation;
+    let force = |t: T| {
+        let (depth, slope) = truncate_positive(solved.eta.at(t), bound);
+        let (stretch, charge) = element.flexibility.integral(t);
+        let worth = r + h * (m_u * stretch + m_q * charge);
+        element.mu2.at(t) * (T::of(2.0) * depth * slope) * worth
+    };
+    work::<T>(h, moments(solved, force))
 }

@@ -97,6 +97,19 @@ fn eliminate<T: Real>(a: &T::Mat4, b: &T::Mat4, v: T::Vec4, held: [bool; 4]) -> 
     finite.then(|| (matrix::<T>(b), T::Vec4::of(v)))
 }
 
+impl<T: Real> Stamp<T, Coupled> {
+    /// The transposed system's part, under the same loads.
+    pub(crate) fn turned(self) -> Self {
+        Self {
+            ee: self.ee.turned(),
+            er: self.re.turned(),
+            re: self.er.turned(),
+            rr: self.rr.turned(),
+            ..self
+        }
+    }
+}
+
 impl<T: Real> Block<T> for Coupled {
     type Vector = T::Vec4;
     type Matrix = T::Mat4;

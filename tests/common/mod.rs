@@ -7,6 +7,7 @@ use piezobeam::{
 };
 use serde_json::Value;
 
+pub mod strong;
 pub mod tolerances;
 
 /// A profile of any of the suite's shapes.
