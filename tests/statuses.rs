@@ -7,6 +7,7 @@ use common::{named, points, tolerances as tol};
 use piezobeam::{
     Beam, Conduction, Curve, Foundation, Function, HeapWorkspace, Law, Linear, Load, Mesh, Model, PointLoad,
     Polynomial, Potential, Power, Problem, Real, Report, Scene, Settings, Status, Steps, Table, Tabulated,
+    Warning,
 };
 use std::cell::Cell;
 
@@ -55,6 +56,56 @@ fn a_halted_solve_knows_the_residual_of_what_it_returns() {
     let settings = Settings { max_visits: Some(500), ..Settings::default() };
     let report = ends(&case.scene, Mesh::uniform(1000), settings);
     assert!(report.residual.is_finite(), "{report:?}");
+}
+
+#[test]
+fn a_law_whose_slope_is_not_its_own_is_stagnation() {
+    for slope in [0.0, 1e3] {
+        // The pressure of 1e6 r with another slope: no step fits.
+        let law = Law(move |_: f64, r: f64| (1e6 * r, slope));
+        let beam = Beam { bending: 5.0, axial: 1.0, piezo: 0.0, permittivity: 1.0 };
+        let scene = Scene::new(1.0, beam)
+            .foundation(Foundation { law, gap: () })
+            .conduction(Conduction::new(1.0, 1.0, 1.0))
+            .load(plain(1e3))
+            .potential(Potential { left: 1.0, right: 1.0 });
+        let report = ends(scene, Mesh::uniform(30), Settings::default());
+        assert_eq!(report.status, Status::Stagnation, "{report:?}");
+        assert!(report.residual > 1e-3);
+    }
+    assert_eq!(Status::Stagnation.name(), "stagnation");
+    assert!(Status::Stagnation.to_string().starts_with("iterations stopped reducing the residual"));
+}
+
+#[test]
+fn a_foundation_that_no_mesh_resolves_is_taken_as_rigid_and_that_is_said() {
+    let transverse = Steps { breaks: &[0.5], values: &[1e6, -1e6] };
+    let scene =
+        |k: f64| {
+            Scene::new(1.0, Beam::elastic(5000.0))
+                .foundation(Foundation { law: Linear(k), gap: () })
+                .load(Load { transverse, axial: (), points: () })
+        };
+    let is_rigid = |warnings: &[Warning<f64>]| warnings.iter().any(|w| matches!(w, Warning::Rigid { .. }));
+    let middle = |scene| {
+        let problem = Problem::new(scene, Mesh::uniform(100)).expect("a scene without mistakes");
+        let mut memory = HeapWorkspace::new();
+        let mut prepared = problem.prepare(&mut memory).expect("memory that grows");
+        let first = prepared.solve(&Settings::default()).expect("settings in range");
+        // Again the same, also where the first time ended with another law than it began with.
+        let solution = prepared.solution(&Settings::default()).expect("settings in range");
+        assert_eq!(first, *solution.report());
+        assert_eq!(first.status, Status::Converged, "{first:?}");
+        assert!(solution.resultants().equilibrium_error < tol::RANDOM_EQUILIBRIUM);
+        (solution.at(0.5).bending, is_rigid(&solution.warnings()))
+    };
+    let (stiff, warned) = middle(scene(1e18));
+    assert!(!warned, "1e18 is solved as it is");
+    for k in [1e30, 1e100, 1e300] {
+        let (rigid, warned) = middle(scene(k));
+        assert!(warned, "{k:e}");
+        assert!((rigid / stiff - 1.0).abs() < tol::RIGID_LIMIT, "{k:e}: {rigid} and {stiff}");
+    }
 }
 
 #[test]

@@ -392,8 +392,10 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 Cut::Whole => {}
                 Cut::Shorter => residual = self.check(scale, count)?,
                 // No energy can judge this step; the residual still can.
-                Cut::Nowhere if residual.relative() < before.relative() => {}
-                Cut::Nowhere => return Ok(None),
+                Cut::Nowhere => match self.halve(before, residual, scale, count)? {
+                    Some(less) => residual = less,
+                    None => return Ok(None),
+                },
             }
         }
         if residual.relative() > stop {
@@ -403,6 +405,30 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         }
         self.best = Some((self.current, residual));
         Ok(Some(residual))
+    }
+
+    /// After a step from the best state, whose residual was `before`, to the current one, where it is `after`:
+    /// halves the step until it has shrunk the residual, as every small enough step does but for rounding.
+    fn halve(
+        &mut self,
+        before: Residual<T>,
+        after: Residual<T>,
+        scale: T,
+        count: &mut Count,
+    ) -> Result<Option<Residual<T>>, Halt> {
+        let (current, mut residual, mut t) = (self.current, after, T::one());
+        for _ in 0..HALVINGS {
+            if residual.relative() < (T::one() - T::of(0.1) * t) * before.relative() {
+                return Ok(Some(residual));
+            }
+            t = T::of(0.5) * t;
+            for Place { work, .. } in self.places.iter_mut() {
+                work.states[current] = work.states[1 - current].toward(work.states[current], T::of(0.5));
+            }
+            let checked = self.check(scale, count);
+            residual = self.tried(checked)?;
+        }
+        Ok(None)
     }
 
     /// The residual of the current state by statics; where that is above `stop`, increments take rounding
@@ -994,6 +1020,9 @@ const FLOOR_STEPS: usize = 6;
 
 /// Full steps taken without halving the residual before they are cut to descend.
 const FULL_STEPS: usize = 12;
+
+/// Halvings of one step.
+const HALVINGS: usize = 12;
 
 /// Cuts of one step: every other one halves its bracket at least.
 const CUTS: usize = 100;

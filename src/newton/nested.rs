@@ -36,6 +36,9 @@ const STRIDE: f64 = 100.0;
 /// Stiffness k L^4 / C with which the continuation starts: contact is a few boundary layers wide.
 const SOFT: f64 = 1e5;
 
+/// A residual of so many times the estimate of its rounding may still be rounding.
+const FLOOR: f64 = 64.0;
+
 /// Where each mesh lies in memory, finest first.
 pub(crate) type Levels = ArrayVec<(usize, usize), MOST_LEVELS>;
 
@@ -176,8 +179,13 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
             Ok(Outcome::Converged) if self.best.is_some_and(|(_, best)| best.relative() <= stop) => {
                 Status::Converged
             }
-            Ok(Outcome::Converged | Outcome::Floor) => Status::ToleranceBelowFloor,
-            Ok(Outcome::Stalled) => Status::Stagnation,
+            Ok(Outcome::Converged | Outcome::Floor)
+                if self.best.is_some_and(|(_, best)| best.relative() <= T::of(FLOOR) * best.floor()) =>
+            {
+                Status::ToleranceBelowFloor
+            }
+            // More is left than rounding explains, even if no step lowers it.
+            Ok(_) => Status::Stagnation,
         };
         // Moments may balance where displacements or fluxes are beyond the number format.
         let ratio = self.places.first().map(|place| electric::Ratio::of(&place.element));

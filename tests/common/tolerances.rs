@@ -97,6 +97,8 @@ pub const HARD_VISITS: (usize, usize) = (400, 100_000);
 pub const FLOORS: f64 = 8.0;
 /// k L^4 / C below which rounding never keeps a residual above 1e-10 on any mesh of the tests.
 pub const RESOLVABLE: f64 = 1e8;
+/// Bending at 1e18 and in the rigid limit on a hundred elements: (C / k)^(1/4) of its change at 1e18, and the mesh's.
+pub const RIGID_LIMIT: f64 = 1e-4;
 /// Residual that rounding may leave of a foundation that is all but rigid, on coarse meshes.
 pub const RIGID_FLOOR: f64 = 1e-4;
 
