@@ -20,6 +20,9 @@ use core::ops::Range;
 /// not converge, or the nodes are others, it starts from nothing. So every scene ends as it would alone: under
 /// (2.15) in the same solution, up to the tolerance; where there are several, in one near the last.
 ///
+/// Nodes stand at breaks and under concentrated loads. For a load that travels, keep the breaks or places and
+/// change the values: a break or a concentrated load that moves makes other nodes.
+///
 /// ```
 /// use piezobeam::{Beam, Foundation, HeapWorkspace, History, Linear, Load, Mesh, Scene, Settings, Status};
 ///
