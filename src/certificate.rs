@@ -57,7 +57,7 @@ pub enum Warning<T> {
     },
     /// The foundation is so much stiffer than the elements that no solution was found for it as it is. It is taken as
     /// one that is rigid to the elements (k h^4 / C = 1e7, in `f32` 8e3): bending, moments and forces are those
-    /// of a rigid foundation, the penetration is larger than asked for.
+    /// of a rigid foundation up to the mesh's own error, the penetration is larger than asked for.
     Rigid {
         /// The smallest stiffness that was taken for a larger one \[N/m^2\].
         stiffness: T,

@@ -41,7 +41,7 @@ pub struct Fields<T> {
     pub potential: Option<T>,
     /// Axial force sigma = EA u' - P q' \[N\].
     pub axial_force: Option<T>,
-    /// Electric displacement D = P u' + eps q'.
+    /// Electric displacement D = P u' + eps q' \[C\].
     pub electric_displacement: Option<T>,
     /// Gap s \[m\].
     pub gap: Option<T>,

@@ -108,7 +108,7 @@ pub enum Output<T> {
     Potential(T),
     /// Axial force sigma at x \[N\].
     AxialForce(T),
-    /// Electric displacement D at x.
+    /// Electric displacement D at x \[C\].
     ElectricDisplacement(T),
     /// Integral of the foundation's pressure \[N\].
     ContactForce,
