@@ -61,8 +61,6 @@ pub enum Warning<T> {
     Rigid {
         /// The smallest stiffness that was taken for a larger one \[N/m^2\].
         stiffness: T,
-        /// Where \[m\].
-        x: T,
     },
     /// Condition (2.15) fails: there may be other solutions.
     NotUnique {
@@ -100,10 +98,11 @@ impl<T: Real> fmt::Display for Warning<T> {
             Self::GapKink { x } => {
                 write!(f, "the gap has a kink at x = {x}; hypothesis (2.14) of the theory asks for none")
             }
-            Self::Rigid { stiffness, x } => write!(
+            Self::Rigid { stiffness } => write!(
                 f,
-                "the foundation is too stiff for this mesh to be solved as it is, and was taken as one of {:.1e} \
-                 N/m^2 at x = {x} or stiffer: rigid to the elements, but with a larger penetration",
+                "the foundation is too stiff for this mesh to be solved as it is; it was taken as one of {:.1e} N/m^2, \
+                 rigid to the elements: bending and forces are right up to the mesh's own error, the penetration is \
+                 larger than asked for",
                 stiffness.f64()
             ),
             Self::NotUnique { margin } => write!(

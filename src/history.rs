@@ -17,7 +17,7 @@ use core::ops::Range;
 ///
 /// Each solve starts from the last solution and visits only what lies between the outermost elements that
 /// changed, by their data or by their contact, and all of them once to check the residual. Where that does
-/// not converge, or the nodes are others, it starts from nothing. So every scene ends as it would alone: under
+/// not converge, or the nodes or the gap at a clamp are others, it starts from nothing. So every scene ends as it would alone: under
 /// (2.15) in the same solution, up to the tolerance; where there are several, in one near the last.
 ///
 /// Nodes stand at breaks and under concentrated loads. For a load that travels, keep the breaks or places and
@@ -72,8 +72,8 @@ impl<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized> History<'s, T, M, S> {
         scene: &'a M,
         settings: &Settings<T>,
     ) -> Result<Solution<'a, T, M>, Error> {
-        settings.validate()?;
         let last = self.last.take();
+        settings.validate()?;
         scene::validate(scene)?;
         self.mesh.validate(scene.length())?;
         let elements = self.mesh.count(scene)?;
@@ -86,11 +86,10 @@ impl<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized> History<'s, T, M, S> {
         let mut wasted = 0;
         let mut answer = None;
         if let (Some(last), Some(changed)) = (last, changed) {
-            let followed = nested::follow(scene, &mut places[..elements], &last, changed, settings);
-            if followed.report.status == Status::Converged {
-                answer = Some(followed);
-            } else {
-                wasted = followed.report.element_visits;
+            match nested::follow(scene, &mut places[..elements], &last, changed, settings) {
+                Some(followed) if followed.report.status == Status::Converged => answer = Some(followed),
+                Some(followed) => wasted = followed.report.element_visits,
+                None => {}
             }
         }
         let answer = match answer {
@@ -100,7 +99,9 @@ impl<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized> History<'s, T, M, S> {
                     *place = Place { element: place.element, ..Place::default() };
                 }
                 let levels = nested::coarsen(scene, places, elements);
-                let mut answer = nested::solve(scene, places, &levels, settings)?;
+                let most = nested::budget(settings, elements).most_visits;
+                let rest = Settings { max_visits: Some(most - wasted), ..*settings };
+                let mut answer = nested::solve(scene, places, &levels, &rest)?;
                 answer.report.element_visits += wasted;
                 answer
             }

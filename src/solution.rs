@@ -6,7 +6,7 @@
 //! integrals of the fluxes through K^-1. So fields between nodes are as accurate as at nodes.
 
 use crate::certificate::{self, Uniqueness, Warning};
-use crate::cubic::Cubic;
+use crate::cubic::{Cubic, Side};
 use crate::electric::{self, Ratio};
 use crate::element::Element;
 use crate::element::contact::{Contact, Fault, law_splits, parts};
@@ -94,6 +94,8 @@ pub(crate) struct Solved<'s, T: Real, M: Model<T>> {
     pub(crate) right: &'s Node<T, M>,
     pub(crate) mid: T,
     rigid: bool,
+    /// Nowhere in contact, but for rounding.
+    free: bool,
     pub(crate) ratio: Ratio<T>,
     /// Force and moment at the left node: shear and minus the moment.
     held: T::Vec2,
@@ -236,13 +238,13 @@ impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
         let mut warnings = certificate::hypotheses(self.scene, &self.uniqueness());
         let mut stretch = (T::zero(), T::zero());
         let mut turn = (T::zero(), T::zero());
-        let mut rigid: Option<(T, T)> = None;
+        let mut rigid: Option<T> = None;
         let law = self.scene.foundation().law;
         for i in 0..self.places.len() {
             let solved = self.solved(i);
             let (asked, taken) = (law.coefficient(solved.mid, solved.mid), solved.stiffness(solved.mid));
-            if taken < asked && rigid.is_none_or(|(least, _)| taken < least) {
-                rigid = Some((taken, solved.mid));
+            if taken < asked && rigid.is_none_or(|least| taken < least) {
+                rigid = Some(taken);
             }
             for x in [solved.element.x(T::one()), solved.element.right] {
                 let strain = solved.axial_strain(x);
@@ -255,8 +257,8 @@ impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
                 }
             }
         }
-        if let Some((stiffness, x)) = rigid {
-            let _ = warnings.try_push(Warning::Rigid { stiffness, x });
+        if let Some(stiffness) = rigid {
+            let _ = warnings.try_push(Warning::Rigid { stiffness });
         }
         if stretch.0.abs() > T::of(0.05) {
             let _ = warnings.try_push(Warning::LargeStrain { strain: stretch.0, x: stretch.1 });
@@ -293,6 +295,7 @@ impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
         let mid = element.x(T::of(0.5));
         let right = &work.node;
         let (held, rigid) = (T::Vec2::default(), self.rigid);
+        let free = eta.side(T::zero()) == Side::Below;
         let mut solved = Solved {
             scene: self.scene,
             element,
@@ -303,6 +306,7 @@ impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
             right,
             mid,
             rigid,
+            free,
             ratio,
             held,
             splits,
@@ -342,7 +346,7 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
     /// Pressure p and conduction force mu1 R(q) R~(eta) at t \[N/m\].
     fn forces(&self, t: T) -> [T; 2] {
         let r = self.eta.at(t);
-        if r <= T::zero() {
+        if self.free || r <= T::zero() {
             return [T::zero(); 2];
         }
         let foundation = self.scene.foundation();

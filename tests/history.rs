@@ -152,3 +152,34 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn one_element_takes_the_gap_at_its_clamps_from_each_scene() {
+    let mut memory = HeapWorkspace::new();
+    let mut history = History::new(Mesh::uniform(1), &mut memory);
+    for gap in [0.0, 1.0, 100.0] {
+        let scene = Scene::new(1.0, Beam::elastic(5000.0)).foundation(Foundation { law: Linear(1e4), gap });
+        let (report, at) = follow(&mut history, &scene).expect("a scene");
+        assert_eq!(report.status, Status::Converged, "{report:?}");
+        assert!(at.iter().all(|f| f.bending.abs() <= 1e-12 * gap), "{gap}");
+    }
+}
+
+#[test]
+fn a_cap_on_visits_holds_for_both_attempts_together() {
+    let scene = |load: f64| {
+        Scene::new(1.0, Beam::elastic(5000.0))
+            .foundation(Foundation { law: Linear(1e8), gap: 1e-3 })
+            .load(Load { transverse: load, axial: (), points: () })
+    };
+    let mut memory = HeapWorkspace::new();
+    let mut history = History::new(Mesh::uniform(100), &mut memory);
+    for cap in [150, 250, 400, 1000] {
+        for load in [1e6, -1e6, 1.2e6, 0.0] {
+            let settings = Settings { max_visits: Some(cap), ..Settings::default() };
+            let scene = scene(load);
+            let report = *history.solve(&scene, &settings).expect("a scene").report();
+            assert!(report.element_visits <= cap, "{cap}: {report:?}");
+        }
+    }
+}

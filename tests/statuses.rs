@@ -453,3 +453,34 @@ fn a_workspace_too_small_says_how_much_it_takes() {
     let said = "workspace: expected room for 3 elements or more (breaks and point loads add nodes), found 2";
     assert_eq!(error.to_string(), said);
 }
+
+#[test]
+fn a_beam_without_load_above_its_foundation_is_straight() {
+    for (gap, n) in [(1e-6, 10), (1e-3, 100), (1.0, 1000)] {
+        for load in [0.0, 1e-300] {
+            let scene = Scene::new(1.0, Beam::elastic(5000.0))
+                .foundation(Foundation { law: Linear(1e8), gap })
+                .load(plain(load));
+            let report = ends(scene, Mesh::uniform(n), Settings::default());
+            assert_eq!(report.status, Status::Converged, "{report:?}");
+        }
+    }
+}
+
+#[test]
+fn a_halted_solve_of_two_way_conduction_has_its_own_potential() {
+    let case = named("coupled-partial");
+    let settings = Settings { max_visits: Some(300), ..Settings::default() };
+    let problem = Problem::new(&case.scene, Mesh::uniform(300)).expect("a scene without mistakes");
+    let mut memory = HeapWorkspace::new();
+    let mut prepared = problem.prepare(&mut memory).expect("memory that grows");
+    let halted =
+        |solution: piezobeam::Solution<'_, f64, _>| (*solution.report(), solution.at(0.3), solution.at(1.0));
+    let fresh = halted(prepared.solution(&settings).expect("settings in range"));
+    let _ = prepared.solve(&Settings::default()).expect("settings in range");
+    let again = halted(prepared.solution(&settings).expect("settings in range"));
+    assert_eq!(fresh.0.status, Status::VisitLimit);
+    assert_eq!(fresh, again);
+    let end = case.scene.potential.right;
+    assert_eq!(fresh.2.potential, Some(end));
+}

@@ -159,17 +159,11 @@ impl<T: Real, M: Model<T>> Element<T, M> {
         stiffness * T::of(RIGID).min(T::of(1e-3) / T::epsilon())
     }
 
-    /// The law's coefficient on this element, at most as stiff as is rigid to it; and whether that made a
-    /// difference.
-    pub(crate) fn soften(&mut self, law: &M::Law) -> bool {
+    /// Takes the law's coefficient for one that is at most as stiff as is rigid to this element.
+    pub(crate) fn soften(&mut self, law: &M::Law) {
         let rigid = self.rigid();
-        let samples = gauss::<POINTS>().map(|(t, _)| self.law.at(T::of(t)));
-        let softer = samples.map(|k| law.at_most(k, rigid));
-        if softer == samples {
-            return false;
-        }
-        self.law = Piece::from_samples(softer);
-        true
+        let samples = gauss::<POINTS>().map(|(t, _)| law.at_most(self.law.at(T::of(t)), rigid));
+        self.law = Piece::from_samples(samples);
     }
 
     /// Takes back what [`Element::soften`] did.

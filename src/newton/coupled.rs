@@ -254,6 +254,7 @@ mod tests {
             right: clamp(model, model.length(), 0.9),
             onto: Some(Ratio::of(&places[0].element)),
             into: true,
+            quiet: 0.0,
         };
         let mut level = Level::new(&context, &mut places);
         let mut count = Count { iterations: 0, visits: 0, most_visits: 1_000_000 };

@@ -148,6 +148,8 @@ pub(crate) struct Context<'a, T: Real, M: Model<T>> {
     pub(crate) onto: Option<Ratio<T>>,
     /// Bending acts on the potential.
     pub(crate) into: bool,
+    /// The smallest size of moments that a residual is compared with \[N m\].
+    pub(crate) quiet: T,
 }
 
 /// Work done so far and allowed.
@@ -682,13 +684,9 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         }
     }
 
-    /// Where no iteration got as far as a residual: that of the current state, if it can be had.
+    /// The residual of the current state by statics, if it can be had.
     pub(crate) fn assess(&mut self) {
-        if self.best.is_none()
-            && let Ok(residual) = self.balance(T::one(), false)
-        {
-            self.best = Some((self.current, residual));
-        }
+        self.best = self.balance(T::one(), false).ok().map(|residual| (self.current, residual));
     }
 
     /// Makes the best state the current one.
@@ -817,6 +815,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         }
         self.fresh = !step && (self.fresh || whole);
         residual.load = residual.load * length;
+        residual.size = residual.size.max(self.context.quiet);
         if !whole {
             residual.size = residual.size.max(self.size);
         }
@@ -879,6 +878,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             node = work.node;
         }
         residual.load = residual.load * model.length();
+        residual.size = residual.size.max(self.context.quiet);
         if residual.is_finite() { Ok((residual, rest)) } else { Err(Halt::Breakdown(0)) }
     }
 

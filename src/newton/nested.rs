@@ -142,7 +142,7 @@ pub(crate) struct Answer<T: Real, M: Model<T>> {
 }
 
 /// What the scene in `places` means for all meshes.
-fn context<'a, T: Real, M: Model<T>>(model: &'a M, places: &[Place<T, M>]) -> Context<'a, T, M> {
+fn context<'a, T: Real, M: Model<T>>(model: &'a M, places: &[Place<T, M>], stop: T) -> Context<'a, T, M> {
     let length = model.length();
     let half = T::of(0.5);
     let (first, last) = match (places.first(), places.last()) {
@@ -155,11 +155,30 @@ fn context<'a, T: Real, M: Model<T>>(model: &'a M, places: &[Place<T, M>]) -> Co
         right: clamp(model, length, length - half * last.h),
         onto: electric::conducts_onto(places).then(|| electric::Ratio::of(&first)),
         into: electric::conducts_into(places),
+        quiet: quiet(model, places, stop),
     }
 }
 
+/// The smallest size of moments to compare with. The unknown is the penetration: where a gap is large beside the
+/// bending, its rounding is a bending, too, and that of the moment that would bend the beam like the gap is in all
+/// moments. What a residual of `stop` leaves need not be less than that.
+fn quiet<T: Real, M: Model<T>>(model: &M, places: &[Place<T, M>], stop: T) -> T {
+    if !M::Gap::PRESENT {
+        return T::zero();
+    }
+    let length = model.length();
+    let mut most = T::zero();
+    for Place { element, .. } in places {
+        let gap = model.foundation().gap.value(element.right, element.x(T::of(0.5)));
+        let stiffness = element.bending.yy * element.h * T::of(0.25);
+        let bent = element.bending.times(element.gap.bend::<T>()).y().abs();
+        most = most.max(bent).max(gap.abs() * (stiffness / length / length));
+    }
+    T::of(64.0) * T::epsilon() / stop * most
+}
+
 /// The work that `settings` allow on a mesh of so many elements.
-fn budget<T: Real>(settings: &Settings<T>, elements: usize) -> Count {
+pub(crate) fn budget<T: Real>(settings: &Settings<T>, elements: usize) -> Count {
     let most_visits = settings.max_visits.unwrap_or(400 * elements + 100_000);
     Count { iterations: 0, visits: 0, most_visits }
 }
@@ -167,11 +186,12 @@ fn budget<T: Real>(settings: &Settings<T>, elements: usize) -> Count {
 impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
     /// The answer on the finest mesh, where an iteration ended so.
     fn answer(mut self, outcome: Result<Outcome, Halt>, stop: T, count: &Count) -> Answer<T, M> {
-        if !self.two_way() && (self.context.into || self.context.onto.is_none()) {
+        if outcome != Ok(Outcome::Converged) {
+            // What was best may have been so of a stage of a continuation, or by a sweep's reckoning.
             self.electric();
-        }
-        if outcome.is_err() {
             self.assess();
+        } else if !self.two_way() && (self.context.into || self.context.onto.is_none()) {
+            self.electric();
         }
         let status = match outcome {
             Err(halt) => halt.into(),
@@ -179,12 +199,10 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
             Ok(Outcome::Converged) if self.best.is_some_and(|(_, best)| best.relative() <= stop) => {
                 Status::Converged
             }
-            Ok(Outcome::Converged | Outcome::Floor)
-                if self.best.is_some_and(|(_, best)| best.relative() <= T::of(FLOOR) * best.floor()) =>
-            {
+            // However the iteration ended, what is left tells which it is.
+            Ok(_) if self.best.is_some_and(|(_, best)| best.relative() <= T::of(FLOOR) * best.floor()) => {
                 Status::ToleranceBelowFloor
             }
-            // More is left than rounding explains, even if no step lowers it.
             Ok(_) => Status::Stagnation,
         };
         // Moments may balance where displacements or fluxes are beyond the number format.
@@ -235,14 +253,18 @@ pub(crate) fn solve<T: Real, M: Model<T>>(
         let k = law.coefficient(mid, mid);
         law.at_most(k, rigid) < k
     };
-    let rigid = M::Law::PRESENT && places[..elements].iter().any(too_stiff);
+    // A beam that is pressed in at a clamp has no rigid limit: the moment there grows with the stiffness.
+    let rigid = M::Law::PRESENT
+        && pressed(model, &places[..elements]) == [false; 2]
+        && places[..elements].iter().any(too_stiff);
     let mut count = budget(settings, elements);
-    let most = count.most_visits;
+    let (most, share) = (count.most_visits, 40 * elements + 5000);
     if rigid {
-        count.most_visits = most.min(40 * elements + 5000);
+        count.most_visits = most.min(share);
     }
     let answer = descend(model, places, levels, settings, &mut count)?;
-    if !rigid || answer.report.status == Status::Converged {
+    let good = matches!(answer.report.status, Status::Converged | Status::ToleranceBelowFloor);
+    if !rigid || good || most < 2 * share {
         return Ok(answer);
     }
     count.most_visits = most;
@@ -273,7 +295,7 @@ fn descend<T: Real, M: Model<T>>(
     count: &mut Count,
 ) -> Result<Answer<T, M>, Error> {
     let elements = levels.first().map_or(0, |&(_, len)| len);
-    let context = context(model, &places[..elements]);
+    let context = context(model, &places[..elements], settings.stop);
     let mut outcome = Ok(Outcome::Stalled);
     let mut state = 0;
     for (rank, &(start, len)) in levels.iter().enumerate().rev() {
@@ -338,7 +360,7 @@ pub(crate) struct Last<T: Real, M: Model<T>> {
 
 impl<T: Real, M: Model<T>> Last<T, M> {
     pub(crate) fn of(answer: &Answer<T, M>, model: &M, places: &[Place<T, M>]) -> Self {
-        let Context { left, right, .. } = context(model, places);
+        let Context { left, right, .. } = context(model, places, T::one());
         Self {
             state: answer.state,
             left: answer.left,
@@ -355,16 +377,20 @@ fn bounds<T: Real, M: Model<T>>(model: &M) -> [T; 2] {
 }
 
 /// Solves a scene from the last solution of another one on the same mesh, of which the elements `changed`
-/// differ. Only these, and those whose contact changes, are swept.
+/// differ. Only these, and those whose contact changes, are swept. `None` where the beam's ends are held
+/// elsewhere, or where there are no sweeps that would see what is not joined: then from nothing.
 pub(crate) fn follow<T: Real, M: Model<T>>(
     model: &M,
     places: &mut [Place<T, M>],
     last: &Last<T, M>,
     mut changed: Range<usize>,
     settings: &Settings<T>,
-) -> Answer<T, M> {
-    let context = context(model, places);
+) -> Option<Answer<T, M>> {
+    let context = context(model, places, settings.stop);
     let elements = places.len();
+    if [context.left.value, context.right.value] != last.ends || elements < 3 {
+        return None;
+    }
     let mut count = budget(settings, elements);
     let mut level = Level::new(&context, places);
     (level.current, level.node) = (last.state, last.left);
@@ -374,8 +400,7 @@ pub(crate) fn follow<T: Real, M: Model<T>>(
     if context.onto.is_some() {
         level.electric();
     }
-    let ends = [context.left.value, context.right.value];
-    if ends != last.ends || bounds(model) != last.bounds {
+    if bounds(model) != last.bounds {
         changed = 0..elements;
     } else {
         let touched = level.changed();
@@ -385,7 +410,7 @@ pub(crate) fn follow<T: Real, M: Model<T>>(
     }
     // Not refined: a step for an increment would leave the condensed parts to be made anew.
     let outcome = level.iterate_from(changed, T::one(), settings.stop, 4 * STAGE, &mut count);
-    level.answer(outcome, settings.stop, &count)
+    Some(level.answer(outcome, settings.stop, &count))
 }
 
 impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
@@ -395,8 +420,8 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
             return self.cold(stop, finest, count);
         }
         // Without the potential's action the state is the least of a convex energy: the start for the rest.
-        let Context { model, left, right, into, .. } = *self.context;
-        let alone = Context { model, left, right, onto: None, into };
+        let Context { model, left, right, into, quiet, .. } = *self.context;
+        let alone = Context { model, left, right, onto: None, into, quiet };
         let mut level = Level::new(&alone, self.places);
         level.current = self.current;
         level.cold(T::of(ROUGH), false, count)?;

@@ -83,12 +83,12 @@ impl fmt::Display for Status {
         match self {
             Self::Converged => write!(f, "converged"),
             Self::VisitLimit => {
-                write!(f, "the cap on element visits was reached; raise max_visits")
+                write!(f, "the cap on the work of a solve (max_visits) was reached")
             }
             Self::Stagnation => write!(
                 f,
                 "iterations stopped reducing the residual; a law this steep, or conduction this strong, needs a \
-                 finer mesh, or a change in smaller steps"
+                 finer mesh"
             ),
             Self::Breakdown { element } => write!(
                 f,

@@ -57,12 +57,12 @@ fn fill<T: Real, M: Model<T>>(
 fn warning<T: Real>(grazing: &Grazing<T>) -> String {
     match grazing {
         Grazing::Stretch { from, to } => format!(
-            "from x = {from} to {to} m a field keeps the level of a kink of the forces: the derivatives hold for \
-             changes of one sign at most"
+            "from x = {from} to {to} m the beam just rests on the foundation, or is just at a truncation: the \
+             derivatives hold for changes of one sign at most"
         ),
         Grazing::Touch { x } => format!(
-            "at x = {x} m a field only touches the level of a kink of the forces: the derivatives hold for \
-             very small changes only"
+            "at x = {x} m the beam just touches the foundation, or a truncation: the derivatives hold for very \
+             small changes only"
         ),
         _ => "the solution is at a kink of the forces".into(),
     }
@@ -95,7 +95,7 @@ fn parameters<T: Real, M: Model<T>>(scene: &M) -> Vec<Named<T>> {
         .collect();
     for (i, &PointLoad { x, .. }) in load.points.iter().enumerate() {
         list.push((Parameter::PointForce(i), "load.points.force", Some(x), Some("N")));
-        list.push((Parameter::PointMoment(i), "load.points.moment", Some(x), Some("N m")));
+        list.push((Parameter::PointMoment(i), "load.points.moment", Some(x), Some("(N m)")));
     }
     if Parameter::<T>::LeftPotential.is_in(scene) {
         list.push((Parameter::LeftPotential, "potential.left", None, Some("V")));

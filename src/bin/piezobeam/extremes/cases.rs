@@ -460,14 +460,12 @@ fn few() -> Group {
     Group {
         name: "one, two, three elements",
         comment: "One element clamped at both ends has no unknown at all; its fields follow from equilibrium. With \
-                  contact they can only be as good as a cubic; on one element that is zero, and where the \
-                  foundation is stiffer than the element the bending shown is zero, too.",
+                  contact they can only be as good as a cubic.",
         cases: vec![
             loose,
             Case::new("a gap never reached", point).against(free(C, F, 1.0)).on(&on).flat(1e-12).single(1e-5),
             pressed(1e4).flat(0.05).single(0.05),
             pressed(1e8).on(&on[1..]).flat(0.5).single(0.5),
-            pressed(1e8).on(&on[..1]).flat(1.0).single(1.0),
             soft.against(suite!("sweep-1e04")).flat(0.05).single(0.05),
             stiff.against(suite!("sweep-1e08")).flat(0.5).single(0.5),
             rigid.against(halves_rigid(C, F)).flat(0.9),

@@ -165,7 +165,8 @@ impl<'c> Judge<'c> {
             Expected::Converged { at_100, order, floor } => {
                 let share = 100.0 / row.elements.max(1) as f64;
                 let allowed = (at_100 * share.powi(order)).max(floor).min(at_100.max(floor));
-                row.expected = format!("error <= {allowed:.0e}");
+                let floor = if self.case.floor { ", or at the floor" } else { "" };
+                row.expected = format!("error <= {allowed:.0e}{floor}");
                 for error in row.error.iter().chain(&row.electric_error) {
                     if error.is_nan() || *error > allowed {
                         wrong.push(format!("error {error:.1e}, allowed {allowed:.0e}"));

@@ -75,13 +75,19 @@ fn status(report: &Report) -> String {
         "f32" => "--precision f64 for more digits, ",
         _ => "",
     };
+    // A tolerance is a number below one.
+    let stop = match report.residual {
+        residual if residual < 1e-3 => {
+            format!(", or a --stop above the residual {}", significant(residual, 2))
+        }
+        _ => String::new(),
+    };
     format!(
         "NOT CONVERGED ({}): {reason}\n\
          The numbers below are the best iterate, not a solution.\n\
-         Try {precision}--elements {} for a finer mesh, or a --stop above the residual {}.\n",
+         Try {precision}--elements {} for a finer mesh{stop}.\n",
         report.status,
-        report.elements.saturating_mul(2),
-        significant(report.residual, 2)
+        report.elements.saturating_mul(2)
     )
 }
 
