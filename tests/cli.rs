@@ -256,7 +256,7 @@ fn time_and_check_say_what_they_promise() {
 }
 
 #[test]
-fn extremes_end_as_expected_or_say_which_do_not() {
+fn extremes_end_as_expected() {
     let folder = folder();
     let output = piezobeam(folder.path(), "extremes --quick --format json");
     let value: Value = serde_json::from_slice(&output.stdout).expect("JSON");
@@ -272,23 +272,18 @@ fn extremes_end_as_expected_or_say_which_do_not() {
         assert!(!converged || row["residual"].as_f64().is_some_and(|r| r < 1e-4), "{row}");
     }
     let with = |verdict: &str| rows.iter().filter(|row| row["verdict"] == verdict).count();
-    let wrong = with("wrong");
-    assert_eq!(value["wrong"], wrong);
-    assert_eq!(with("ok") + with("refused") + wrong, rows.len());
-    assert_eq!(output.status.code(), Some(i32::from(wrong > 0)));
-    // Whatever is not solved says so: no answer is wrong that is called converged.
-    let said = |row: &&&Value, word: &str| row["remarks"].to_string().contains(word);
-    let false_answers = rows.iter().filter(|row| row["verdict"] == "wrong" && row["status"] == "converged");
-    for word in ["panicked", "residual", "not finite", "pulls", "zones"] {
-        assert_eq!(false_answers.clone().filter(|row| said(row, word)).count(), 0, "{word}");
-    }
+    let wrong: Vec<_> = rows.iter().filter(|row| row["verdict"] == "wrong").collect();
+    assert!(wrong.is_empty(), "{wrong:?}");
+    assert_eq!(value["wrong"], 0);
+    assert_eq!(with("ok") + with("refused"), rows.len());
+    assert_eq!(output.status.code(), Some(0));
 }
 
 #[test]
 fn extremes_make_a_document() {
     let folder = folder();
     let line = "extremes --quick --format markdown --out extremes.md";
-    assert!(matches!(piezobeam(folder.path(), line).status.code(), Some(0 | 1)));
+    assert_eq!(piezobeam(folder.path(), line).status.code(), Some(0));
     let text = std::fs::read_to_string(folder.path().join("extremes.md")).expect("a document");
     assert!(text.starts_with("# Extremes\n\n`cargo beam extremes --quick --format markdown"), "{text}");
     assert!(refusal(&folder, line).contains("--force"));

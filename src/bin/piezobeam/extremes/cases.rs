@@ -468,7 +468,7 @@ fn few() -> Group {
             pressed(1e8).on(&on[1..]).flat(0.5).single(0.5),
             soft.against(suite!("sweep-1e04")).flat(0.05).single(0.05),
             stiff.against(suite!("sweep-1e08")).flat(0.5).single(0.5),
-            rigid.against(halves_rigid(C, F)).flat(0.9),
+            rigid.against(halves_rigid(C, F)).flat(0.9).or_at_the_floor(),
         ],
     }
 }
