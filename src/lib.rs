@@ -63,10 +63,16 @@
 //! # Ok::<(), piezobeam::Error>(())
 //! ```
 //!
+//! # Control and design
+//!
+//! [`History`] solves scenes one after the other, each from the last solution, and visits only what changed.
+//! [`Prepared::tangent`] and [`Prepared::adjoint`] differentiate a solution.
+//!
 //! # Memory
 //!
-//! Nothing is allocated in a solve. [`Workspace`] holds a fixed number of elements where you put it; [`HeapWorkspace`] (feature `alloc`) grows when a scene is laid into it. Bytes per element depend on
-//! what the scene has: [`Workspace::BYTES_PER_ELEMENT`].
+//! Nothing is allocated in a solve. [`Workspace`] holds a fixed number of elements where you put it;
+//! [`HeapWorkspace`] (feature `alloc`) grows when a scene is laid into it. Bytes per element depend on what the
+//! scene has: [`Workspace::BYTES_PER_ELEMENT`].
 //!
 //! # Features
 //!
