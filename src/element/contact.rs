@@ -274,7 +274,7 @@ impl<T: Real> Contact<T> {
     pub(crate) fn size(&self, motion: &Motion<T>, cd: T::Vec2, h: T) -> T {
         if self.touch == Touch::Mixed {
             let terms = self.stiffness.iter().zip(motion.cubic().0);
-            h * terms.fold(T::zero(), |sum, (moment, c)| sum + *moment * c.abs())
+            h * terms.fold(T::zero(), |sum, (moment, c)| sum + (*moment * c).abs())
         } else {
             cd.x().abs()
         }
