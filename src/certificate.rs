@@ -123,7 +123,7 @@ impl<T: Real> fmt::Display for Warning<T> {
 }
 
 /// Smallest and largest value of a profile over the Gauss points and ends of all elements.
-fn range<T: Real, M: Model<T>, P: Profile<T>>(profile: &P, places: &[Place<T, M>]) -> (T, T) {
+pub(crate) fn range<T: Real, M: Model<T>, P: Profile<T>>(profile: &P, places: &[Place<T, M>]) -> (T, T) {
     let mut range = (T::infinity(), T::neg_infinity());
     for Place { element, .. } in places {
         let mid = element.x(T::of(0.5));
@@ -141,6 +141,13 @@ fn range<T: Real, M: Model<T>, P: Profile<T>>(profile: &P, places: &[Place<T, M>
     range
 }
 
+/// The best constants of Poincare's inequalities for functions that vanish at both ends \[m\], and for those whose
+/// slopes vanish, too \[m^2\].
+pub(crate) fn poincare<T: Real>(length: T) -> [T; 2] {
+    let root = length / T::of(4.730_040_744_862_704);
+    [length / T::of(core::f64::consts::PI), root * root]
+}
+
 pub(crate) fn uniqueness<T: Real, M: Model<T>>(model: &M, places: &[Place<T, M>]) -> Uniqueness<T> {
     let (beam, conduction) = (model.beam(), model.conduction());
     let zero = T::zero();
@@ -151,10 +158,7 @@ pub(crate) fn uniqueness<T: Real, M: Model<T>>(model: &M, places: &[Place<T, M>]
     }
     let (m, mq) = (conduction.truncation, conduction.potential_truncation);
     let half = T::of(0.5);
-    let length = model.length();
-    let c1 = length / T::of(core::f64::consts::PI);
-    let root = length / T::of(4.730_040_744_862_704);
-    let c2 = root * root;
+    let [c1, c2] = poincare(model.length());
     let stiffness = range(beam.bending, places).0 / c2 / c2;
     let permittivity = range(beam.permittivity, places).0 / c1 / c1;
     let bending = stiffness / (mu1 * (mq + half * m) + mu2 * m);

@@ -49,6 +49,20 @@ impl<T: Real> Cubic<T> {
         c1 + t * (T::of(2.0) * c2 + t * (T::of(3.0) * c3))
     }
 
+    /// Second derivative in t.
+    #[inline(always)]
+    pub(crate) fn curvature(&self, t: T) -> T {
+        let [_, _, c2, c3] = self.0;
+        T::of(2.0) * c2 + T::of(6.0) * c3 * t
+    }
+
+    /// A number that no value on [0, 1] exceeds: the largest control value of the Bernstein form.
+    pub(crate) fn hull(&self) -> T {
+        let [c0, c1, c2, c3] = self.0;
+        let b1 = c0 + c1 * T::of(1.0 / 3.0);
+        c0.max(b1).max(b1 + (c1 + c2) * T::of(1.0 / 3.0)).max(c0 + c1 + c2 + c3)
+    }
+
     /// Which side of `level` the whole cubic lies on, by the control values of its Bernstein form, whose
     /// hull holds the curve: `Below` and `Above` are certain up to rounding, `Both` is not.
     #[inline(always)]

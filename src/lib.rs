@@ -106,6 +106,7 @@ extern crate std;
 #[cfg(not(any(feature = "std", feature = "libm")))]
 compile_error!("piezobeam needs elementary functions: enable the feature `std` or `libm`");
 
+mod accuracy;
 mod certificate;
 mod cubic;
 mod electric;
@@ -125,6 +126,7 @@ mod solution;
 mod storage;
 mod sweep;
 
+pub use accuracy::Certificate;
 pub use certificate::{Uniqueness, Warning};
 pub use cubic::Cubic;
 pub use error::{Error, Place};

@@ -80,7 +80,7 @@ pub struct Solution<'s, T: Real, M: Model<T>> {
     pub(crate) state: usize,
     pub(crate) left: Node<T, M>,
     /// The foundation was taken as one that is rigid to the elements.
-    rigid: bool,
+    pub(crate) rigid: bool,
 }
 
 /// An element in its solved state.
@@ -98,7 +98,7 @@ pub(crate) struct Solved<'s, T: Real, M: Model<T>> {
     free: bool,
     pub(crate) ratio: Ratio<T>,
     /// Force and moment at the left node: shear and minus the moment.
-    held: T::Vec2,
+    pub(crate) held: T::Vec2,
     /// Kinks of the forces inside the element, in t.
     pub(crate) splits: ArrayVec<T, 14>,
 }
@@ -345,6 +345,11 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
 
     /// Pressure p and conduction force mu1 R(q) R~(eta) at t \[N/m\].
     fn forces(&self, t: T) -> [T; 2] {
+        self.forces_by(t, || self.q.at(t))
+    }
+
+    /// The same under the potential `q`.
+    pub(crate) fn forces_by(&self, t: T, q: impl FnOnce() -> T) -> [T; 2] {
         let r = self.eta.at(t);
         if self.free || r <= T::zero() {
             return [T::zero(); 2];
@@ -358,7 +363,7 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
         let bounds = self.scene.conduction();
         let drive = if M::Mu1::PRESENT {
             bounds.mu1.value(x, self.mid)
-                * truncate(self.q.at(t), bounds.potential_truncation).0
+                * truncate(q(), bounds.potential_truncation).0
                 * truncate_positive(r, bounds.truncation).0
         } else {
             T::zero()
@@ -489,11 +494,16 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
         self.ratio.gradients::<M>(&k, tau, displacement)
     }
 
+    /// Potential at t.
+    pub(crate) fn potential(&self, t: T) -> T {
+        self.right.q.get() - self.element.h * integrate::<T, 4>(T::zero(), t, |y| self.gradients(y).1)
+    }
+
     fn axial_strain(&self, x: T) -> T {
         if M::Axial::PRESENT { self.gradients(self.t(x)).0 } else { T::zero() }
     }
 
-    fn fields(&self, x: T) -> Fields<T> {
+    pub(crate) fn fields(&self, x: T) -> Fields<T> {
         let (element, h) = (self.element, self.element.h);
         let t = self.t(x);
         let (zero, one) = (T::zero(), T::one());
@@ -525,8 +535,7 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
         let sigma = self.ratio.sigma(tau, displacement);
         let stretching = M::Axial::PRESENT
             .then(|| self.right.u.get() - h * integrate::<T, 4>(zero, t, |y| self.gradients(y).0));
-        let potential = M::Permittivity::PRESENT
-            .then(|| self.right.q.get() - h * integrate::<T, 4>(zero, t, |y| self.gradients(y).1));
+        let potential = M::Permittivity::PRESENT.then(|| self.potential(t));
         let grounded = M::Law::PRESENT || M::Gap::PRESENT || M::Mu1::PRESENT || M::Mu2::PRESENT;
         Fields {
             x,

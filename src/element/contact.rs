@@ -53,7 +53,7 @@ impl Touch {
         if !M::Law::LINEAR || element.law.constant().is_none() {
             return Self::Mixed;
         }
-        if !element.conducts() {
+        if !element.conducts_onto() {
             return Self::Full;
         }
         let bounds = model.conduction();
@@ -138,7 +138,7 @@ impl<T: Real> Contact<T> {
             Touch::High => Ok(Self::full(touch, stiffness + drive())),
             Touch::Low => Ok(Self::full(touch, stiffness - drive())),
             Touch::Mixed => {
-                let q = if element.conducts() { q() } else { Cubic::default() };
+                let q = if element.conducts_onto() { q() } else { Cubic::default() };
                 Self::split(model, element, &eta, &q, scale, Tangent::Whole)
             }
         }
@@ -165,7 +165,7 @@ impl<T: Real> Contact<T> {
         of: Tangent,
     ) -> Result<Self, Fault> {
         let law = model.foundation().law;
-        let conducts = element.conducts();
+        let conducts = element.conducts_onto();
         let bounds = model.conduction();
         let (most, most_q) = (bounds.truncation, bounds.potential_truncation);
         let mut splits = Splits::new();
@@ -327,7 +327,7 @@ pub(crate) fn parts<T: Real, const N: usize>(splits: &mut ArrayVec<T, N>) -> imp
 impl<T: Real, M: Model<T>> Element<T, M> {
     /// Has the conduction force mu1 R(q) R~(eta) a part here?
     #[inline(always)]
-    fn conducts(&self) -> bool {
+    pub(crate) fn conducts_onto(&self) -> bool {
         M::Mu1::PRESENT && self.mu1.constant() != Some(T::zero())
     }
 

@@ -661,11 +661,11 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         -T::Vec2::of(w.value(), theta.value())
     }
 
-    /// Takes the rounding of the sweeps out of a converged state, where there is any to speak of; keeps
-    /// what is better.
-    pub(crate) fn refine(&mut self, count: &mut Count) -> Result<(), Halt> {
+    /// Takes the rounding of the sweeps out of a converged state, where its residual is more than `units` in the last
+    /// place; keeps what is better.
+    pub(crate) fn refine(&mut self, units: f64, count: &mut Count) -> Result<(), Halt> {
         let Some((_, best)) = self.best else { return Ok(()) };
-        if best.relative() <= T::of(128.0) * T::epsilon() {
+        if best.relative() <= T::of(units) * T::epsilon() {
             return Ok(());
         }
         let refined = self.rejoin(T::one(), count).and_then(|open| {

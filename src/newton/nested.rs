@@ -36,6 +36,9 @@ const STRIDE: f64 = 100.0;
 /// Stiffness k L^4 / C with which the continuation starts: contact is a few boundary layers wide.
 const SOFT: f64 = 1e5;
 
+/// A residual of so many units in the last place is good enough not to be polished.
+const POLISHED: f64 = 128.0;
+
 /// A residual of so many times the estimate of its rounding may still be rounding.
 const FLOOR: f64 = 64.0;
 
@@ -320,24 +323,10 @@ fn descend<T: Real, M: Model<T>>(
             outcome = if coarsest {
                 level.begin(stop, rank == 0, count)
             } else {
-                level.iterate(T::one(), stop, STAGE, count)
+                level.proceed(stop, rank == 0, count)
             };
-            if !coarsest && outcome == Ok(Outcome::Stalled) {
-                outcome = if level.convex() {
-                    // The contact's edges are known to a few elements: soften until its layers are as wide.
-                    level.climb_from(stop, rank == 0, count)
-                } else if rank == 0 {
-                    // The coarser meshes misled: start anew on this one.
-                    for place in level.places.iter_mut() {
-                        place.work.states = [State::default(); 2];
-                    }
-                    level.begin(stop, true, count)
-                } else {
-                    outcome
-                };
-            }
             if rank == 0 && outcome == Ok(Outcome::Converged) {
-                outcome = level.refine(count).map(|()| Outcome::Converged);
+                outcome = level.refine(POLISHED, count).map(|()| Outcome::Converged);
             }
         }
         if rank == 0 {
@@ -346,6 +335,31 @@ fn descend<T: Real, M: Model<T>>(
         state = level.current;
     }
     Err(Error::Capacity { needed: 1, available: 0 })
+}
+
+/// Solves on a mesh whose elements are in the state of a coarser one, under its foundation, taken as `rigid` or not.
+pub(crate) fn sharpen<T: Real, M: Model<T>>(
+    model: &M,
+    places: &mut [Place<T, M>],
+    rigid: bool,
+    settings: &Settings<T>,
+) -> Answer<T, M> {
+    if rigid {
+        for place in places.iter_mut() {
+            place.element.soften(model.foundation().law);
+        }
+    }
+    let mut count = budget(settings, places.len());
+    let context = context(model, places, settings.stop);
+    let mut level = Level::new(&context, places);
+    if context.onto.is_some() && !context.into {
+        level.electric();
+    }
+    let mut outcome = level.proceed(settings.stop, true, &mut count);
+    if outcome == Ok(Outcome::Converged) {
+        outcome = level.refine(1.0, &mut count).map(|()| Outcome::Converged);
+    }
+    Answer { rigid, ..level.answer(outcome, settings.stop, &count) }
 }
 
 /// What is left of the last solve on a mesh.
@@ -432,6 +446,25 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
             return self.climb_from(stop, finest, count);
         }
         Ok(outcome)
+    }
+
+    /// From where a coarser mesh ended.
+    fn proceed(&mut self, stop: T, finest: bool, count: &mut Count) -> Result<Outcome, Halt> {
+        let outcome = self.iterate(T::one(), stop, STAGE, count)?;
+        if outcome != Outcome::Stalled {
+            Ok(outcome)
+        } else if self.convex() {
+            // The contact's edges are known to a few elements: soften until its layers are as wide.
+            self.climb_from(stop, finest, count)
+        } else if finest {
+            // The coarser meshes misled: start anew on this one.
+            for place in self.places.iter_mut() {
+                place.work.states = [State::default(); 2];
+            }
+            self.begin(stop, true, count)
+        } else {
+            Ok(outcome)
+        }
     }
 
     /// From nothing, for bending alone: the free beam, then a continuation in the stiffness as far as it is needed.

@@ -1,0 +1,131 @@
+//! How far a solution may be trusted: a guaranteed bound on its error, and an estimate of it.
+
+mod bound;
+mod distance;
+mod divide;
+
+use crate::error::Error;
+use crate::newton::{Report, Settings, nested};
+use crate::profile::Profile;
+use crate::real::Real;
+use crate::scene::Model;
+use crate::solution::Solution;
+use crate::storage::Storage;
+use distance::Distance;
+
+/// How many elements of the finer mesh a certificate divides an element into.
+const PARTS: usize = 4;
+
+/// What is known of the error of a solution against the continuous problem.
+///
+/// The energy norms are (integral of C xi''^2)^(1/2) for bending and (integral of EA u'^2 + eps q'^2)^(1/2) for
+/// stretching and potential; all numbers are relative to the solution's own.
+///
+/// The bounds take for granted that the scene's functions are what their samples say: integrals are Gauss's, exact for
+/// polynomials of degree seven and less between the kinks. Rounding is counted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Certificate<T> {
+    /// Guaranteed bound on the error of the discrete bending xi_h = s + eta_h in the energy norm. `None` where the
+    /// theory gives none: conduction in both directions beyond (2.15), a foundation that was taken as rigid
+    /// ([`Warning::Rigid`](crate::Warning::Rigid)), numbers that are not finite.
+    ///
+    /// xi_h is cubic in each element and of second order in this norm. The fields that [`Solution::at`] gives are
+    /// those of its statics, of fourth order: the estimates below are of these.
+    pub bending_bound: Option<T>,
+    /// Guaranteed bound on the error of stretching and potential in their energy norm; `None` as above, or where the
+    /// scene has neither.
+    pub electric_bound: Option<T>,
+    /// Estimate of the largest error of bending, over the largest bending.
+    pub bending_estimate: T,
+    /// The same of the stretching.
+    pub stretching_estimate: Option<T>,
+    /// The same of the potential.
+    pub potential_estimate: Option<T>,
+    /// How the solve on the finer mesh went.
+    pub report: Report<T>,
+}
+
+impl<T: Real, M: Model<T>> Solution<'_, T, M> {
+    /// The energy norm of the difference of two discrete bendings, (integral of C (xi_h - xi_H)''^2)^(1/2), over that
+    /// of `finer`. `None` unless the mesh of `finer` divides each element of this one into equal parts.
+    #[must_use]
+    pub fn distance(&self, finer: &Solution<'_, T, M>) -> Option<T> {
+        let distance = Distance::between(self, finer)?;
+        Some(distance.bending / finer.imbalance().size)
+    }
+
+    /// Bounds and estimates the error by a solve on a mesh four times as fine, which starts from this solution.
+    ///
+    /// Let v be the deflection on this mesh and w that on the finer one. The distance of v to w is known, that of
+    /// w to the solution is bounded by statics: ||xi - v|| <= ||w - v|| + ||m^ - C w''||, where the moment m^ is in
+    /// equilibrium with the contact forces of w. The second term is small beside the first, so that the sum is little
+    /// more than the error. It is a bound whatever w is, also where the finer solve has not converged.
+    ///
+    /// ```
+    /// use piezobeam::{Beam, Foundation, HeapWorkspace, Linear, Load, Mesh, Problem, Scene, Settings};
+    ///
+    /// let scene = Scene::new(1.0_f64, Beam::elastic(5000.0))
+    ///     .foundation(Foundation { law: Linear(1e8), gap: () })
+    ///     .load(Load { transverse: 1e6, axial: (), points: () });
+    /// let problem = Problem::new(scene, Mesh::uniform(100))?;
+    /// let (mut memory, mut finer) = (HeapWorkspace::new(), HeapWorkspace::new());
+    /// let solution = problem.solve(&mut memory, &Settings::default())?;
+    /// let certificate = solution.certify(&mut finer, &Settings::default())?;
+    /// // Of the energy norm, a guarantee; of the deflection itself, an estimate.
+    /// assert!(certificate.bending_bound.is_some_and(|bound| bound < 1e-2));
+    /// assert!(certificate.bending_estimate < 1e-6);
+    /// # Ok::<(), piezobeam::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A profile's value out of its range at a point of the finer mesh; less memory than four times the elements;
+    /// settings out of range.
+    ///
+    /// # Cost
+    /// Memory for four times the elements. A solve on the finer mesh, two or three visits of each of its elements as a
+    /// rule (they are in the report), and about as much again for the norms.
+    pub fn certify<S: Storage<T, M> + ?Sized>(
+        &self,
+        memory: &mut S,
+        settings: &Settings<T>,
+    ) -> Result<Certificate<T>, Error> {
+        settings.validate()?;
+        let (scene, needed) = (self.scene(), PARTS * self.places.len());
+        let places = memory.places(needed);
+        let available = places.len();
+        let places = places.get_mut(..needed).ok_or(Error::Capacity { needed, available })?;
+        let mut left = T::zero();
+        for (whole, parts) in self.places.iter().zip(places.chunks_exact_mut(PARTS)) {
+            for (j, place) in parts.iter_mut().enumerate() {
+                *place = divide::part(scene, whole, left, (j, PARTS), self.state)?;
+            }
+            left = whole.element.right;
+        }
+        let answer = nested::sharpen(scene, places, self.rigid, settings);
+        let finer = Solution::new(scene, places, answer);
+
+        let nested = Error::Capacity { needed, available };
+        let distance = Distance::between(self, &finer).ok_or(nested)?;
+        let finite = |bound: T| bound.is_finite().then_some(bound);
+        let bounds = finer.robustness().filter(|_| !self.rigid).map(|kappa| finer.bounds(kappa));
+        let relative = |distance: T, bound: T, size: T| {
+            let whole = distance + bound;
+            finite(if whole == T::zero() { whole } else { whole / (size - bound).max(T::zero()) })
+        };
+        let estimate = |(error, size): (T, T)| {
+            // What rounding leaves of both solutions is in neither's difference to the other.
+            T::of(4.0) * T::epsilon() + if error == T::zero() { error } else { error / size }
+        };
+        let present = |present: bool, number: T| present.then_some(number);
+        Ok(Certificate {
+            bending_bound: bounds.and_then(|b| relative(distance.bending, b.bending, b.bending_size)),
+            electric_bound: bounds
+                .filter(|_| crate::electric::present::<T, M>())
+                .and_then(|b| relative(distance.electric, b.electric, b.electric_size)),
+            bending_estimate: estimate(distance.fields[0]),
+            stretching_estimate: present(M::Axial::PRESENT, estimate(distance.fields[1])),
+            potential_estimate: present(M::Permittivity::PRESENT, estimate(distance.fields[2])),
+            report: answer.report,
+        })
+    }
+}
