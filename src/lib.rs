@@ -126,7 +126,7 @@ mod solution;
 mod storage;
 mod sweep;
 
-pub use accuracy::Certificate;
+pub use accuracy::{Adapted, Adaptive, Certificate, Reached};
 pub use certificate::{Uniqueness, Warning};
 pub use cubic::Cubic;
 pub use error::{Error, Place};

@@ -29,7 +29,7 @@ use crate::element::Element;
 #[derive(Clone, Copy, Debug)]
 pub struct Problem<'a, T, M> {
     scene: M,
-    mesh: Mesh<'a, T>,
+    pub(crate) mesh: Mesh<'a, T>,
 }
 
 impl<'a, T: Real, M: Model<T>> Problem<'a, T, M> {
@@ -68,21 +68,7 @@ impl<'a, T: Real, M: Model<T>> Problem<'a, T, M> {
         &'s self,
         memory: &'s mut S,
     ) -> Result<Prepared<'s, T, M>, Error> {
-        // Count first, so that memory that grows does so once.
-        let elements = self.mesh.count(&self.scene)?;
-        let places = memory.places(elements);
-        if elements > places.len() {
-            return Err(Error::Capacity { needed: elements, available: places.len() });
-        }
-        let mut free = places.iter_mut();
-        self.mesh.lay(&self.scene, |left, right, stop| {
-            if let Some(place) = free.next() {
-                *place = Place::default();
-                place.element = Element::sample(&self.scene, left, right, stop)?;
-            }
-            Ok(())
-        })?;
-        let levels = nested::coarsen(&self.scene, places, elements);
+        let (places, levels) = lay(&self.scene, &self.mesh, memory)?;
         Ok(Prepared { scene: &self.scene, places, levels, answer: None })
     }
 
@@ -98,6 +84,30 @@ impl<'a, T: Real, M: Model<T>> Problem<'a, T, M> {
     ) -> Result<Solution<'s, T, M>, Error> {
         self.prepare(memory)?.into_solution(settings)
     }
+}
+
+/// Samples `scene` on `mesh`, and the coarser meshes behind it.
+pub(crate) fn lay<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
+    scene: &M,
+    mesh: &Mesh<'_, T>,
+    memory: &'s mut S,
+) -> Result<(&'s mut [Place<T, M>], Levels), Error> {
+    // Count first, so that memory that grows does so once.
+    let elements = mesh.count(scene)?;
+    let places = memory.places(elements);
+    if elements > places.len() {
+        return Err(Error::Capacity { needed: elements, available: places.len() });
+    }
+    let mut free = places.iter_mut();
+    mesh.lay(scene, |left, right, stop| {
+        if let Some(place) = free.next() {
+            *place = Place::default();
+            place.element = Element::sample(scene, left, right, stop)?;
+        }
+        Ok(())
+    })?;
+    let levels = nested::coarsen(scene, places, elements);
+    Ok((places, levels))
 }
 
 /// A scene laid into memory, ready to be solved, again and again.
@@ -143,7 +153,7 @@ impl<'s, T: Real, M: Model<T>> Prepared<'s, T, M> {
         Ok(Solution::new(self.scene, &self.places[..elements], answer))
     }
 
-    fn run(&mut self, settings: &Settings<T>) -> Result<Answer<T, M>, Error> {
+    pub(crate) fn run(&mut self, settings: &Settings<T>) -> Result<Answer<T, M>, Error> {
         if self.answer.take().is_some_and(|last| last.rigid) {
             nested::harden(self.scene, self.places, &self.levels);
         }

@@ -337,15 +337,33 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
     }
 
     /// The law's coefficient at x, as the element has it.
-    fn stiffness(&self, x: T) -> T {
+    pub(crate) fn stiffness(&self, x: T) -> T {
         let law = self.scene.foundation().law;
         let k = law.coefficient(x, self.mid);
         if self.rigid { law.at_most(k, self.element.rigid()) } else { k }
     }
 
     /// Pressure p and conduction force mu1 R(q) R~(eta) at t \[N/m\].
-    fn forces(&self, t: T) -> [T; 2] {
+    pub(crate) fn forces(&self, t: T) -> [T; 2] {
         self.forces_by(t, || self.q.at(t))
+    }
+
+    /// How fast the contact's forces grow with the penetration at t \[N/m^2\].
+    pub(crate) fn tangent(&self, t: T) -> T {
+        let r = self.eta.at(t);
+        if self.free || r <= T::zero() {
+            return T::zero();
+        }
+        let (foundation, x) = (self.scene.foundation(), self.element.x(t));
+        let resists =
+            if M::Law::PRESENT { foundation.law.pressure(self.stiffness(x), x, r).1 } else { T::zero() };
+        let bounds = self.scene.conduction();
+        let drives = if M::Mu1::PRESENT && r < bounds.truncation {
+            bounds.mu1.value(x, self.mid) * truncate(self.q.at(t), bounds.potential_truncation).0.abs()
+        } else {
+            T::zero()
+        };
+        resists + drives
     }
 
     /// The same under the potential `q`.
@@ -390,7 +408,7 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
     }
 
     /// Transverse load less contact at t \[N/m\].
-    fn net(&self, t: T) -> T {
+    pub(crate) fn net(&self, t: T) -> T {
         let [p, drive] = self.forces(t);
         self.scene.load().transverse.value(self.element.x(t), self.mid) - p - drive
     }
@@ -406,7 +424,7 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
 
     /// Integrals of the curvature from the right node to t: of kappa, and of kappa times the distance to
     /// t, over x.
-    fn curvature(&self, t: T) -> (T, T) {
+    pub(crate) fn curvature(&self, t: T) -> (T, T) {
         let h = self.element.h;
         let stiffness = self.scene.beam().bending;
         let kappa = |y: T| self.statics(y).0 / stiffness.value(self.element.x(y), self.mid);
@@ -437,9 +455,16 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
         if !points.into_iter().any(held) {
             return T::one();
         }
-        let clear = points.into_iter().fold(T::infinity(), |least, t| least.min(-self.eta.at(t)));
-        let added = self.net(T::of(0.5)).abs() / (T::of(384.0) * soft);
-        if clear <= T::zero() { T::zero() } else { T::one().min(clear / added) }
+        // In contact the cubic; else as much of the bubble 16 t^2 (1 - t)^2 added, if it leads towards the
+        // foundation, as there is room for.
+        let added = self.net(T::of(0.5)) / (T::of(384.0) * soft);
+        if !self.free || added <= T::zero() {
+            return if self.free { T::one() } else { T::zero() };
+        }
+        [0.125, 0.25, 0.5, 0.75, 0.875].into_iter().fold(T::one(), |trust, t| {
+            let bubble = added * T::of(16.0 * t * t * (1.0 - t) * (1.0 - t));
+            trust.min(-self.eta.at(T::of(t)) / bubble)
+        })
     }
 
     fn slope_at_node(&self, right: bool) -> T {

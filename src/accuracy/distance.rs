@@ -1,9 +1,7 @@
 //! How far apart two discrete solutions are, one on a mesh that divides the other's.
 
-use super::PARTS;
 use crate::electric;
 use crate::element::Element;
-use crate::element::hermite::Motion;
 use crate::profile::Profile;
 use crate::quadrature::gauss;
 use crate::real::{Pair, Real, Sum};

@@ -1,8 +1,12 @@
 //! How far a solution may be trusted: a guaranteed bound on its error, and an estimate of it.
 
+mod adapt;
 mod bound;
 mod distance;
 mod divide;
+mod share;
+
+pub use adapt::{Adapted, Adaptive, Reached};
 
 use crate::error::Error;
 use crate::newton::{Report, Settings, nested};
@@ -101,7 +105,12 @@ impl<T: Real, M: Model<T>> Solution<'_, T, M> {
             }
             left = whole.element.right;
         }
-        let answer = nested::sharpen(scene, places, self.rigid, settings);
+        if self.rigid {
+            for place in places.iter_mut() {
+                place.element.soften(scene.foundation().law);
+            }
+        }
+        let answer = nested::sharpen(scene, places, 1.0, settings);
         let finer = Solution::new(scene, places, answer);
 
         let nested = Error::Capacity { needed, available };

@@ -42,9 +42,10 @@ use crate::cubic::Cubic;
 use crate::electric::{self, Ratio};
 use crate::element::Element;
 use crate::element::contact::{Contact, Fault, Touch};
-use crate::element::hermite::Motion;
+use crate::element::hermite::{self, Motion};
 use crate::law::Compliance;
 use crate::profile::Profile;
+use crate::quadrature::POINTS;
 use crate::real::{Pair, Real, Sum};
 use crate::scene::Model;
 use crate::storage::{Node, Place, State, Work};
@@ -597,6 +598,31 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         self.keep_best();
         let open = self.rejoin(scale, count)?;
         self.increment(open, scale, count)
+    }
+
+    /// The increment by which a uniform load would move the current state, linearly, goes into the spare states.
+    ///
+    /// The load on the left of an element does its work on the element's e, as all that is left of it follows rigidly:
+    /// the element carries it like the difference of statics in a polishing step.
+    fn yielding(&mut self, load: T) -> bool {
+        let (current, spare) = (self.current, 1 - self.current);
+        self.best = Some((current, Residual::none()));
+        for Place { element, work } in self.places.iter_mut() {
+            let left = element.right - element.h;
+            let (own, _) = hermite::loads(element.h, [load; POINTS]);
+            let before = T::Vec2::of(load * left, T::of(-0.5) * load * left * left);
+            work.set_load(spare, -(own + before));
+        }
+        let all = 0..self.places.len();
+        let open = T::Vec2::default();
+        let yields = self.condense(all, T::one(), Solve::Increment { open }).is_ok()
+            && self.substitute(true).is_some();
+        for Place { work, .. } in self.places.iter_mut() {
+            let State { e, d } = work.states[current];
+            let moved = &mut work.states[spare];
+            (moved.e, moved.d) = (moved.e - e, moved.d - d);
+        }
+        yields && self.current == spare
     }
 
     /// Joins the nodes of the best state anew and finds what is missing of equilibrium; by how much the left end

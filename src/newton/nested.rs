@@ -266,8 +266,7 @@ pub(crate) fn solve<T: Real, M: Model<T>>(
         count.most_visits = most.min(share);
     }
     let answer = descend(model, places, levels, settings, &mut count)?;
-    let good = matches!(answer.report.status, Status::Converged | Status::ToleranceBelowFloor);
-    if !rigid || good || most < 2 * share {
+    if !rigid || answer.report.is_solved() || most < 2 * share {
         return Ok(answer);
     }
     count.most_visits = most;
@@ -337,29 +336,43 @@ fn descend<T: Real, M: Model<T>>(
     Err(Error::Capacity { needed: 1, available: 0 })
 }
 
-/// Solves on a mesh whose elements are in the state of a coarser one, under its foundation, taken as `rigid` or not.
+/// Solves on a mesh whose elements are in the state of a coarser one, and polishes what is left to so many `units` in
+/// the last place.
 pub(crate) fn sharpen<T: Real, M: Model<T>>(
     model: &M,
     places: &mut [Place<T, M>],
-    rigid: bool,
+    units: f64,
     settings: &Settings<T>,
 ) -> Answer<T, M> {
-    if rigid {
-        for place in places.iter_mut() {
-            place.element.soften(model.foundation().law);
-        }
-    }
     let mut count = budget(settings, places.len());
     let context = context(model, places, settings.stop);
     let mut level = Level::new(&context, places);
     if context.onto.is_some() && !context.into {
         level.electric();
     }
-    let mut outcome = level.proceed(settings.stop, true, &mut count);
-    if outcome == Ok(Outcome::Converged) {
-        outcome = level.refine(1.0, &mut count).map(|()| Outcome::Converged);
+    let mut outcome = level.join_in(settings.stop, &mut count);
+    if outcome == Ok(Outcome::Stalled) {
+        outcome = level.proceed(settings.stop, true, &mut count);
     }
-    Answer { rigid, ..level.answer(outcome, settings.stop, &count) }
+    if outcome == Ok(Outcome::Converged) {
+        outcome = level.refine(units, &mut count).map(|()| Outcome::Converged);
+    }
+    level.answer(outcome, settings.stop, &count)
+}
+
+/// How far each node moves under a uniform load, the contact as it is: the step goes into the spare state of each
+/// element. The load is the one that would move the free beam by `most`.
+pub(crate) fn compliance<T: Real, M: Model<T>>(
+    model: &M,
+    places: &mut [Place<T, M>],
+    answer: &Answer<T, M>,
+    most: T,
+) -> Option<T> {
+    let context = context(model, places, T::one());
+    let mut level = Level::new(&context, places);
+    (level.current, level.node) = (answer.state, answer.left);
+    let load = T::of(384.0) * level.bending() / model.length().powi(4) * most;
+    (load > T::zero() && level.yielding(load)).then_some(load)
 }
 
 /// What is left of the last solve on a mesh.
@@ -446,6 +459,15 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
             return self.climb_from(stop, finest, count);
         }
         Ok(outcome)
+    }
+
+    /// From near the solution, where bending and potential hold each other: the monolithic method alone.
+    fn join_in(&mut self, stop: T, count: &mut Count) -> Result<Outcome, Halt> {
+        if !self.two_way() {
+            return Ok(Outcome::Stalled);
+        }
+        self.electric();
+        if self.convex() { Ok(Outcome::Stalled) } else { self.descend_coupled(T::one(), stop, STAGE, count) }
     }
 
     /// From where a coarser mesh ended.

@@ -130,3 +130,10 @@ pub struct Report<T> {
     /// Elements of the mesh.
     pub elements: usize,
 }
+
+impl<T> Report<T> {
+    /// Converged, or as well as rounding lets it.
+    pub(crate) fn is_solved(&self) -> bool {
+        matches!(self.status, Status::Converged | Status::ToleranceBelowFloor)
+    }
+}

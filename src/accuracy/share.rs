@@ -1,0 +1,115 @@
+//! What each element adds to the error of bending.
+//!
+//! Nodal values of bending are exact but for three things: the contact force inside an element follows its cubic and not
+//! the solution; the stiffness varies inside it; Gauss's rule misses the force of a curved law at its edge. Each is a small
+//! force or kink. How far a force here moves the beam anywhere follows from how far the beam yields here to a uniform
+//! load (Maxwell and Betti).
+
+use crate::element::contact::parts;
+use crate::element::hermite::Motion;
+use crate::law::Compliance;
+use crate::profile::Profile;
+use crate::quadrature::{POINTS, gauss, integrate};
+use crate::real::{Pair, Real};
+use crate::scene::Model;
+use crate::solution::Solved;
+use crate::storage::State;
+
+/// Parts that an element is divided into in one pass at most.
+const MOST_PARTS: usize = 8;
+
+/// What an element adds to the error of bending anywhere, and how that shrinks when it is divided.
+#[derive(Clone, Copy)]
+pub(super) struct Share<T> {
+    /// The deflection \[m\].
+    pub(super) error: T,
+    /// Stiffness of the foundation against that of the element: where it is large the error is not yet that of small
+    /// elements.
+    pub(super) stiff: T,
+}
+
+impl<T: Real> Share<T> {
+    /// What is left of it on `n` parts together: as 1 / n^4.
+    pub(super) fn divided(&self, n: usize) -> T {
+        let fourth = T::from(n).unwrap_or(T::one()).powi(-4);
+        self.error * fourth * (T::one() + self.stiff) / (T::one() + self.stiff * fourth)
+    }
+
+    /// The least number of parts none of which has more than `most`.
+    pub(super) fn parts(&self, most: T) -> usize {
+        let fits = |n: &usize| self.divided(*n) <= most * T::from(*n).unwrap_or(T::one());
+        (1..MOST_PARTS).find(fits).unwrap_or(MOST_PARTS)
+    }
+}
+
+impl<T: Real> Share<T> {
+    /// That of one element for two neighbours.
+    pub(super) fn joined(&self, other: &Self) -> Self {
+        let sixteen = T::of(16.0);
+        Self { error: sixteen * (self.error + other.error), stiff: sixteen * self.stiff.max(other.stiff) }
+    }
+}
+
+impl<T: Real, M: Model<T>> Solved<'_, T, M> {
+    /// What this element adds to the error of bending. `moved` is how far it moves under the uniform load `load`.
+    pub(super) fn share(&self, load: T, moved: &State<T>) -> Share<T> {
+        let (element, h) = (self.element, self.element.h);
+        let length = self.scene.length();
+        let points = [0.0, 0.25, 0.5, 0.75, 1.0].map(T::of);
+        // The foundation's tangent stiffness, and what the cubic leaves of the load.
+        let (mut stiffness, mut open) = (T::zero(), T::zero());
+        let mut touching = 0;
+        for t in points {
+            let tangent = self.tangent(t);
+            touching += usize::from(tangent > T::zero());
+            stiffness = stiffness.max(tangent);
+            open = open.max(self.net(t).abs());
+        }
+        let c = T::of(0.25) * element.bending.yy * h;
+        let stiff = stiffness * h.powi(4) / (T::of(504.0) * c);
+        // Between its nodes the beam departs from the cubic by open h^4 t^2 (1 - t)^2 / 24 C, of mean / 720 C.
+        let force = stiffness * open * h.powi(5) / (T::of(720.0) * c * (T::one() + stiff));
+        // How much a load here moves the beam where it moves most: its mean over the beam is known, and where the
+        // beam is held on both sides by the foundation it moves within the layer's width only.
+        let yielding = Motion::new(h, moved.e, moved.d).cubic();
+        let mean = points.into_iter().fold(T::zero(), |m, t| m.max(yielding.at(t).abs())) / load;
+        let mut weight = T::of(3.0) * mean / length;
+        if touching > 0 && touching < points.len() && stiff > T::one() {
+            // A contact edge that is not resolved is not yet in its place, and the beam yields otherwise there.
+            weight = T::of(4.0) * weight;
+        }
+        if stiffness > T::zero() {
+            let layer = (T::of(4.0) * c / stiffness).sqrt().sqrt().min(length);
+            weight = weight.max(layer.powi(3) / (T::of(8.0) * c));
+        }
+        Share { error: (force + self.misjudged()) * weight + self.unevenness(), stiff }
+    }
+
+    /// By how much Gauss's rule misses the force of a curved law: against the rule on halves \[N\].
+    fn misjudged(&self) -> T {
+        if M::Law::LINEAR {
+            return T::zero();
+        }
+        let mut splits = self.splits.clone();
+        parts(&mut splits).fold(T::zero(), |sum, (a, b)| {
+            let force = |from, to| integrate::<T, POINTS>(from, to, |t| self.forces(t)[0]);
+            let mid = a + T::of(0.5) * (b - a);
+            sum + self.element.h * (force(a, mid) + force(mid, b) - force(a, b)).abs()
+        })
+    }
+
+    /// What a stiffness that varies inside the element bends it otherwise than its cubic does, as a deflection: the
+    /// curvature is the statical moment over the stiffness.
+    fn unevenness(&self) -> T {
+        let (mid, stiffness) = (self.mid, self.scene.beam().bending);
+        let [first, rest @ ..] =
+            gauss::<POINTS>().map(|(t, _)| stiffness.value(self.element.x(T::of(t)), mid));
+        if rest.iter().all(|c| *c == first) {
+            return T::zero();
+        }
+        let (turn, lift) = self.curvature(T::one());
+        let apart = self.bend() - T::Vec2::of(lift, -turn);
+        // A kink moves the middle of a clamped beam by a quarter of what it would a cantilever's end.
+        apart.x().abs() + T::of(0.25) * self.scene.length() * apart.y().abs()
+    }
+}
