@@ -34,6 +34,12 @@
 //! A solve is [`Status::Converged`] only if the moment that the deformation gives and the one that statics
 //! gives agree, on all elements.
 //!
+//! # Errors
+//!
+//! [`Solution::certify`] bounds the error against the continuous problem in the energy norm, guaranteed, and estimates
+//! those of the fields. [`Problem::solve_to`] makes a mesh for an accuracy that is asked for, [`Adaptive`] for scenes
+//! one after the other.
+//!
 //! # Derivatives
 //!
 //! One more sweep at a converged solution gives a [`Tangent`]: the derivatives of all fields to one

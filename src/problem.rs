@@ -49,6 +49,15 @@ impl<'a, T: Real, M: Model<T>> Problem<'a, T, M> {
         &self.scene
     }
 
+    /// The same scene on another mesh.
+    ///
+    /// # Errors
+    /// What is wrong with the mesh.
+    pub fn on(self, mesh: Mesh<'_, T>) -> Result<Problem<'_, T, M>, Error> {
+        mesh.validate(self.scene.length())?;
+        Ok(Problem { scene: self.scene, mesh })
+    }
+
     /// Memory for `N` elements of this kind of scene (see [`Workspace`] for what to add for the coarser
     /// meshes).
     #[must_use]

@@ -313,9 +313,11 @@ impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
         };
         // A state without a converged law may not be linearised: then the law's force is left out, as the
         // status says.
-        let (force, _) = solved
+        let (force, whole) = solved
             .contact()
             .map_or_else(|_| (T::Vec2::default(), T::Vec2::default()), |c| c.force(&motion, element.h));
+        // At a clamp without a gap rounding may put a crossing beside it.
+        solved.free = solved.free || whole.x().abs() <= T::of(64.0) * T::epsilon() * element.fr.x().abs();
         solved.held = element.bending.times(solved.bend()) + force - element.fe;
         solved
     }
@@ -348,10 +350,9 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
         self.forces_by(t, || self.q.at(t))
     }
 
-    /// How fast the contact's forces grow with the penetration at t \[N/m^2\].
-    pub(crate) fn tangent(&self, t: T) -> T {
-        let r = self.eta.at(t);
-        if self.free || r <= T::zero() {
+    /// How fast the contact's forces grow at t with the penetration, if that is r \[N/m^2\].
+    pub(crate) fn tangent(&self, t: T, r: T) -> T {
+        if r <= T::zero() {
             return T::zero();
         }
         let (foundation, x) = (self.scene.foundation(), self.element.x(t));

@@ -17,6 +17,7 @@ use crate::real::{Pair, Real};
 use crate::scene::{self, Model};
 use crate::solution::Solution;
 use crate::storage::{Place, Storage};
+use core::fmt;
 use core::marker::PhantomData;
 
 /// How a solve to an accuracy ended.
@@ -39,7 +40,8 @@ pub struct Adapted<'s, T: Real, M: Model<T>> {
     pub solution: Solution<'s, T, M>,
     /// How the search for the mesh ended.
     pub reached: Reached,
-    /// Estimate of the largest error of bending over the largest bending, with a margin of two.
+    /// Estimate of the largest error of bending over the largest bending: by the shares of the elements and what the
+    /// meshes before had of it, where there were any. [`Solution::certify`] gives a better one.
     pub estimate: T,
     /// Meshes solved on. The visits of elements on all of them are in the solution's report.
     pub passes: usize,
@@ -53,6 +55,8 @@ const STRIDE: f64 = 100.0;
 const MARGIN: f64 = 0.3;
 /// Points at which the deflection is compared between passes.
 const COMPARED: usize = 17;
+/// Rounding leaves so many units in the last place of the largest deflection, however fine the mesh.
+const FLOOR: f64 = 16.0;
 /// Relative residual asked for on a mesh, over the error that it is made for.
 const ROUGH: f64 = 1e-2;
 
@@ -117,6 +121,30 @@ pub struct Adaptive<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized> {
     /// Elements of the last mesh and the number of their states, if that solve converged.
     last: Option<(usize, usize)>,
     scenes: PhantomData<fn(&M)>,
+}
+
+impl Reached {
+    /// Lower case, for machines.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Tolerance => "tolerance",
+            Self::Floor => "floor",
+            Self::Capacity => "capacity",
+            Self::Unsolved => "unsolved",
+        }
+    }
+}
+
+impl fmt::Display for Reached {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Tolerance => "the error is estimated to be what was asked for at most",
+            Self::Floor => "rounding keeps the error above what was asked for",
+            Self::Capacity => "the memory holds no finer mesh, or too many would be needed",
+            Self::Unsolved => "the solve on the last mesh has not converged",
+        })
+    }
 }
 
 impl<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized> Adaptive<'s, T, M, S> {
@@ -228,6 +256,8 @@ fn run<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
     settings: &Settings<T>,
 ) -> Result<Adapted<'s, T, M>, Error> {
     let Start { mut elements, mut answer, mut visits, warm } = start;
+    let (asked, floor) = (tolerance, T::of(FLOOR) * T::epsilon());
+    let tolerance = asked.max(floor);
     // What a mesh is solved to, when `target` is the error that it is made for.
     let solved_to = |target: T, visits: usize| {
         let last = target <= tolerance;
@@ -249,7 +279,7 @@ fn run<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
         let good = estimate <= T::of(MARGIN) * tolerance;
         let target = tolerance.max(estimate / T::of(STRIDE));
         let allowed = T::of(0.5 * MARGIN) * target * pass.most / calibration;
-        let wanted = Shares { places, shares: 1 - answer.state }.plan(allowed, usize::MAX);
+        let wanted = Shares { places, shares: 1 - answer.state, join: true }.plan(allowed, usize::MAX);
         if good && !(warm && passes == 1 && wanted.elements < elements - elements / 4) {
             break (estimate, Reached::Tolerance);
         }
@@ -257,7 +287,8 @@ fn run<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
             break (estimate, Reached::Unsolved);
         }
         let room = memory.places(wanted.elements.max(elements)).len();
-        let shares = Shares { places: &memory.places(elements)[..elements], shares: 1 - answer.state };
+        let shares =
+            Shares { places: &memory.places(elements)[..elements], shares: 1 - answer.state, join: true };
         let plan = if wanted.elements > room { shares.plan(allowed, room) } else { wanted };
         if passes == PASSES || (wanted.elements > room && plan.elements <= elements) {
             break (estimate, Reached::Capacity);
@@ -282,10 +313,10 @@ fn run<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
     report.element_visits = visits;
     if report.status != Status::Converged {
         reached = Reached::Unsolved;
-    } else if reached == Reached::Tolerance && report.residual > tolerance {
+    } else if reached == Reached::Tolerance && report.residual.max(floor) > asked {
         reached = Reached::Floor;
     }
-    let estimate = estimate.max(report.residual);
+    let estimate = estimate.max(report.residual).max(floor);
     Ok(Adapted { solution: Solution::new(scene, places, answer), reached, estimate, passes })
 }
 

@@ -20,11 +20,13 @@ use crate::cubic::Cubic;
 use crate::electric;
 use crate::element::contact::parts;
 use crate::law::{Compliance, truncate};
+use crate::newton::nested::Answer;
 use crate::profile::{Piece, Profile, Smooth};
 use crate::quadrature::{POINTS, gauss};
 use crate::real::{Pair, Real, Sum};
 use crate::scene::Model;
 use crate::solution::{Solution, Solved};
+use crate::storage::Place;
 use arrayvec::ArrayVec;
 
 /// What bounds the errors of a solution, and the solution's own size: energy norms \[J^(1/2)\].
@@ -58,77 +60,87 @@ struct Statics<T> {
     shear: Sum<T>,
 }
 
-impl<T: Real, M: Model<T>> Solution<'_, T, M> {
-    /// The statical moment against that of the deflection s + eta.
-    ///
-    /// # Cost
-    /// One pass; four evaluations of the load and the contact force and five of the stiffness between two kinks.
-    pub(super) fn imbalance(&self) -> Imbalance<T> {
-        let (length, gap) = (self.scene().length(), self.scene().foundation().gap);
-        let stiffness = self.scene().beam().bending;
-        let (mut statics, mut largest) =
-            (Statics { moment: Sum::default(), shear: Sum::default() }, T::zero());
-        let (mut size, mut mismatch) = (Sum::<T>::default(), Sum::<T>::default());
-        // Of the straight line a + b x: what 1, x do to each other and to the mismatch.
-        let (mut grams, mut works) = ([Sum::<T>::default(); 3], [Sum::<T>::default(); 2]);
-        for i in 0..self.places.len() {
-            let solved = self.solved(i);
-            let (element, h) = (solved.element, solved.element.h);
-            if i == 0 {
-                let held = solved.held;
-                (statics.shear, statics.moment) = (Sum::from(held.x()), Sum::from(-held.y()));
-            }
-            let mut splits = solved.splits.clone();
-            let pieces: ArrayVec<(T, T), 15> = parts(&mut splits).collect();
-            for &(a, b) in pieces.iter().rev() {
-                let t = |z: f64| a + (b - a) * T::of(z);
-                let length_here = h * (b - a);
-                let net = Cubic::from_samples(gauss::<POINTS>().map(|(z, _)| net(&solved, t(z))));
-                let along = Along::new(&net, length_here, &statics);
-                for (z, weight) in gauss::<5>() {
-                    let (t, x) = (t(z), element.x(t(z)));
-                    let c = stiffness.value(x, solved.mid);
-                    let bent = c * (gap.jet(x, solved.mid)[2] + solved.eta.curvature(t) / h / h);
-                    let moment = along.moment(T::of(z));
-                    let (open, part) = (moment - bent, T::of(weight) * length_here / c);
-                    largest = largest.max(moment.abs());
-                    size.add(part * bent * bent);
-                    mismatch.add(part * open * open);
-                    let line = x / length;
-                    for (sum, power) in grams.iter_mut().zip([T::one(), line, line * line]) {
-                        sum.add(part * power);
-                    }
-                    for (sum, power) in works.iter_mut().zip([T::one(), line]) {
-                        sum.add(part * power * open);
-                    }
+/// The statical moment against that of the deflection s + eta, in the states that `answer` left in `places`. Each
+/// element's part of the mismatch, squared, goes into its spare state.
+///
+/// # Cost
+/// One pass; four evaluations of the load and the contact force and five of the stiffness between two kinks.
+pub(super) fn imbalance<T: Real, M: Model<T>>(
+    scene: &M,
+    places: &mut [Place<T, M>],
+    answer: &Answer<T, M>,
+) -> Imbalance<T> {
+    let length = scene.length();
+    let mut statics = Statics { moment: Sum::default(), shear: Sum::default() };
+    let (mut size, mut mismatch, mut largest) = (Sum::<T>::default(), Sum::<T>::default(), T::zero());
+    // Of the straight line a + b x: what 1, x do to each other and to the mismatch.
+    let (mut grams, mut works) = ([Sum::<T>::default(); 3], [Sum::<T>::default(); 2]);
+    for i in 0..places.len() {
+        let solution = Solution::new(scene, &*places, *answer);
+        let solved = solution.solved(i);
+        let (element, h) = (solved.element, solved.element.h);
+        if i == 0 {
+            statics = Statics { moment: Sum::from(-solved.held.y()), shear: Sum::from(solved.held.x()) };
+        }
+        let mut own = T::zero();
+        let mut splits = solved.splits.clone();
+        let pieces: ArrayVec<(T, T), 15> = parts(&mut splits).collect();
+        for &(a, b) in pieces.iter().rev() {
+            let t = |z: f64| a + (b - a) * T::of(z);
+            let piece = h * (b - a);
+            let net = Cubic::from_samples(gauss::<POINTS>().map(|(z, _)| net(&solved, t(z))));
+            let along = Along::new(&net, piece, &statics);
+            for (z, weight) in gauss::<5>() {
+                let (t, x) = (t(z), element.x(t(z)));
+                let c = scene.beam().bending.value(x, solved.mid);
+                let curvature =
+                    scene.foundation().gap.jet(x, solved.mid)[2] + solved.eta.curvature(t) / h / h;
+                let (bent, moment) = (c * curvature, along.moment(T::of(z)));
+                let (open, part) = (moment - bent, T::of(weight) * piece / c);
+                largest = largest.max(moment.abs());
+                size.add(part * bent * bent);
+                own = own + part * open * open;
+                let line = x / length;
+                for (sum, power) in grams.iter_mut().zip([T::one(), line, line * line]) {
+                    sum.add(part * power);
                 }
-                along.carry(&mut statics);
-            }
-            for point in self.scene().load().points {
-                if (point.x - element.right).abs() <= T::of(16.0) * T::epsilon() * length {
-                    statics.shear.add(point.force);
-                    statics.moment.add(-point.moment);
+                for (sum, power) in works.iter_mut().zip([T::one(), line]) {
+                    sum.add(part * power * open);
                 }
             }
+            along.carry(&mut statics);
         }
-        let [one, x, xx] = grams.map(Sum::value);
-        let [by_one, by_x] = works.map(Sum::value);
-        let spared =
-            (by_one * by_one * xx - T::of(2.0) * by_one * by_x * x + by_x * by_x * one) / (one * xx - x * x);
-        let rounding = self.report().floor * largest * one.sqrt();
-        Imbalance {
-            mismatch: (mismatch.value() - spared).max(T::zero()).sqrt() + rounding,
-            size: size.value().sqrt(),
+        mismatch.add(own);
+        for point in scene.load().points {
+            if (point.x - element.right).abs() <= T::of(16.0) * T::epsilon() * length {
+                statics.shear.add(point.force);
+                statics.moment.add(-point.moment);
+            }
         }
+        places[i].work.states[1 - answer.state].e = T::Vec2::of(own, T::zero());
     }
+    let [one, x, xx] = grams.map(Sum::value);
+    let [by_one, by_x] = works.map(Sum::value);
+    let spared =
+        (by_one * by_one * xx - T::of(2.0) * by_one * by_x * x + by_x * by_x * one) / (one * xx - x * x);
+    let rounding = answer.report.floor * largest * one.sqrt();
+    Imbalance {
+        mismatch: (mismatch.value() - spared).max(T::zero()).sqrt() + rounding,
+        size: size.value().sqrt(),
+    }
+}
 
+impl<T: Real, M: Model<T>> Solution<'_, T, M> {
     /// Bounds on the errors of bending, and of stretching and potential.
     ///
     /// u and q are exact for the penetration at hand, so only its error delta reaches them, through the current:
     /// the energy of their error is the integral of mu2 (R~(eta)^2 - R~(v - s)^2) (q - q_h), the skew coupling by P
     /// cancels. The current's error is at most 2 mu2 A |delta|, A the mean penetration of both.
-    pub(super) fn bounds(&self, kappa: Robustness<T>) -> Bounds<T> {
-        let Imbalance { mismatch, size } = self.imbalance();
+    pub(super) fn bounds(
+        &self,
+        Imbalance { mismatch, size }: Imbalance<T>,
+        kappa: Robustness<T>,
+    ) -> Bounds<T> {
         let bending = mismatch / kappa.bending;
         let electric = match (electric::conducts_onto(self.places), electric::conducts_into(self.places)) {
             (_, false) => T::zero(),
@@ -265,5 +277,33 @@ impl<T: Real> Along<T> {
         statics.moment.add(self.length * self.shear);
         statics.moment.add(self.length * self.length * self.lever(T::zero()));
         statics.shear.add(self.length * Piece::integral(&self.net, T::one()));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn statics_integrate_the_load_twice() {
+        // n = 1 + 2 z - 3 z^2 + 4 z^3 over a length of 2, from the left end, z = 1, on.
+        let net = Cubic([1.0, 2.0, -3.0, 4.0]);
+        let mut statics = Statics { moment: Sum::from(5.0), shear: Sum::from(-7.0) };
+        let along = Along::new(&net, 2.0, &statics);
+        let steps = 20_000;
+        let (mut moment, mut shear) = (5.0, -7.0);
+        for i in 0..steps {
+            let dx = 2.0 / f64::from(steps);
+            let z = 1.0 - (f64::from(i) + 0.5) / f64::from(steps);
+            moment += dx * (shear + 0.5 * dx * net.at(z));
+            shear += dx * net.at(z);
+            if i == steps / 2 - 1 {
+                assert!((along.moment(0.5) - moment).abs() < 1e-7);
+            }
+        }
+        along.carry(&mut statics);
+        assert!((statics.moment.value() - moment).abs() < 1e-7);
+        assert!((statics.shear.value() - shear).abs() < 1e-7);
+        assert!((along.moment(0.0) - statics.moment.value()).abs() < 1e-14);
     }
 }

@@ -13,6 +13,8 @@ use crate::storage::State;
 pub(super) struct Distance<T> {
     /// Of the deflections \[J^(1/2)\].
     pub(super) bending: T,
+    /// Of the finer one's deflection, by its cubics.
+    pub(super) size: T,
     /// Of stretching and potential \[J^(1/2)\].
     pub(super) electric: T,
     /// Largest difference and largest value of bending, stretching, potential.
@@ -27,6 +29,7 @@ impl<T: Real> Distance<T> {
         fine: &Solution<'_, T, M>,
     ) -> Option<Self> {
         let (mut bending, mut electric) = (Sum::<T>::default(), Sum::<T>::default());
+        let mut size = Sum::<T>::default();
         let mut fields = [(T::zero(), T::zero()); 3];
         // Without conduction into the potential both have it, and the stretching, without error.
         let into = electric::conducts_into(coarse.places);
@@ -50,6 +53,7 @@ impl<T: Real> Distance<T> {
             let apart = e - whole.motion.part(right, share).e;
             bending.add(apart.times(stiffness.times(apart)));
             let part = fine.solved(i);
+            size.add(part.bend().times(stiffness.times(part.bend())));
             if into {
                 let beam = fine.scene().beam();
                 for (z, weight) in gauss::<5>() {
@@ -70,10 +74,8 @@ impl<T: Real> Distance<T> {
                 *most = most.max(get(&b).abs());
             }
         }
-        Some(Self {
-            bending: bending.value().max(T::zero()).sqrt(),
-            electric: electric.value().sqrt(),
-            fields,
-        })
+        let [bending, size, electric] =
+            [bending, size, electric].map(|sum| sum.value().max(T::zero()).sqrt());
+        Some(Self { bending, size, electric, fields })
     }
 }

@@ -60,12 +60,15 @@ pub(super) struct Plan<T> {
     most: T,
     /// Elements then.
     pub(super) elements: usize,
+    join: bool,
 }
 
 /// Parts and joins of a mesh, whose elements' shares of the error are in their states number `shares`.
 pub(super) struct Shares<'p, T: Real, M: Model<T>> {
     pub(super) places: &'p [Place<T, M>],
     pub(super) shares: usize,
+    /// Elements may be joined, too.
+    pub(super) join: bool,
 }
 
 impl<T: Real, M: Model<T>> Shares<'_, T, M> {
@@ -78,7 +81,7 @@ impl<T: Real, M: Model<T>> Shares<'_, T, M> {
     fn joins(&self, i: usize, most: T) -> bool {
         let (Some(west), Some(east)) = (self.places.get(i), self.places.get(i + 1)) else { return false };
         let (a, b) = (self.of(i), self.of(i + 1));
-        let like = (west.element.h - east.element.h).abs() <= T::of(1e-6) * west.element.h;
+        let like = self.join && (west.element.h - east.element.h).abs() <= T::of(1e-6) * west.element.h;
         like && !west.element.stop && a.joined(&b).error <= T::of(JOINED) * most
     }
 
@@ -118,7 +121,7 @@ impl<T: Real, M: Model<T>> Shares<'_, T, M> {
             most = most / T::of(STEP);
             elements = self.count(most).0;
         }
-        Plan { most, elements }
+        Plan { most, elements, join: self.join }
     }
 }
 
@@ -129,7 +132,7 @@ pub(super) fn remesh<T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
     memory: &mut S,
     elements: usize,
     state: usize,
-    Plan { most, elements: needed }: Plan<T>,
+    Plan { most, elements: needed, join }: Plan<T>,
 ) -> Result<(), Error> {
     let shares = 1 - state;
     let places = memory.places(needed.max(elements));
@@ -143,7 +146,7 @@ pub(super) fn remesh<T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
     };
     let (mut kept, mut i) = (0, 0);
     while i < elements {
-        if (Shares { places: &places[..elements], shares }).joins(i, most) {
+        if (Shares { places: &places[..elements], shares, join }).joins(i, most) {
             let mut whole = joined(model, [&places[i], &places[i + 1]], left_of(places, kept), state)?;
             // It has what it may have.
             whole.work.states[shares].e = T::Vec2::default();
@@ -158,7 +161,7 @@ pub(super) fn remesh<T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
     // From the right, so that no element is overwritten before it is divided.
     let mut end = needed;
     for i in (0..kept).rev() {
-        let parts = (Shares { places: &places[..kept], shares }).of(i).parts(most);
+        let parts = (Shares { places: &places[..kept], shares, join }).of(i).parts(most);
         let (whole, left) = (places[i], left_of(places, i));
         end -= parts;
         for j in 0..parts {
@@ -176,3 +179,110 @@ const JOINED: f64 = 0.25;
 /// Factor between the largest shares that are tried, and how many are.
 const STEP: f64 = 0.8;
 const FINER: usize = 400;
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+    use super::*;
+    use crate::{Beam, Foundation, Linear, Load, Scene};
+    use glam::DVec2;
+    use std::vec::Vec;
+
+    fn scene() -> impl Model<f64> {
+        Scene::new(1.0, Beam::elastic(3.0)).foundation(Foundation { law: Linear(7.0), gap: () }).load(Load {
+            transverse: 5.0,
+            axial: (),
+            points: (),
+        })
+    }
+
+    fn whole<M: Model<f64>>(model: &M, stop: bool) -> Place<f64, M> {
+        let mut place = Place::default();
+        place.element = Element::sample(model, 0.2, 0.8, stop).unwrap();
+        place.work.states[0] = State { e: DVec2::new(0.3, -0.7), d: DVec2::new(1.1, 0.4) };
+        place
+    }
+
+    #[test]
+    fn parts_lie_on_the_cubic_of_the_whole_and_join_to_it() {
+        let model = scene();
+        for stop in [false, true] {
+            let place = whole(&model, stop);
+            let cubic = Motion::new(place.element.h, place.work.states[0].e, place.work.states[0].d).cubic();
+            for parts in 1..=5 {
+                let list: Vec<_> =
+                    (0..parts).map(|j| part(&model, &place, 0.2, (j, parts), 0).unwrap()).collect();
+                assert_eq!(list[parts - 1].element.right, 0.8);
+                for (j, one) in list.iter().enumerate() {
+                    assert_eq!(one.element.stop, stop && j + 1 == parts);
+                    let State { e, d } = one.work.states[0];
+                    let own = Motion::new(one.element.h, e, d).cubic();
+                    for z in [0.0, 0.3, 1.0] {
+                        let t = 1.0 - (j as f64 + 1.0 - z) / parts as f64;
+                        assert!((own.at(z) - cubic.at(t)).abs() < 1e-14);
+                    }
+                }
+                if parts == 2 {
+                    let again = joined(&model, [&list[0], &list[1]], 0.2, 0).unwrap();
+                    let State { e, d } = again.work.states[0];
+                    assert!((e - place.work.states[0].e).abs().max_element() < 1e-15);
+                    assert_eq!(
+                        (d, again.element.right, again.element.stop),
+                        (place.work.states[0].d, 0.8, stop)
+                    );
+                }
+            }
+        }
+    }
+
+    /// A mesh of equal elements with these shares.
+    fn mesh<M: Model<f64>>(model: &M, shares: &[f64]) -> Vec<Place<f64, M>> {
+        let h = 1.0 / shares.len() as f64;
+        let place = |(i, &share): (usize, &f64)| {
+            let mut place = Place::default();
+            let left = i as f64 * h;
+            place.element = Element::sample(model, left, left + h, i + 1 == shares.len()).unwrap();
+            place.work.states[1].e = DVec2::new(share, 0.0);
+            place
+        };
+        shares.iter().enumerate().map(place).collect()
+    }
+
+    #[test]
+    fn a_plan_spends_what_is_allowed_and_no_more_elements_than_there_is_room_for() {
+        let model = scene();
+        let places = mesh(&model, &[1e-3, 1e-9, 1e-9, 1e-9, 1e-9, 1e-5, 1e-7, 1e-4]);
+        let shares = |join| Shares { places: &places, shares: 1, join };
+        for allowed in [1e-4, 1e-5, 3e-6] {
+            let plan = shares(true).plan(allowed, usize::MAX);
+            let (elements, error) = shares(true).count(plan.most);
+            assert_eq!(elements, plan.elements);
+            assert!(error <= allowed, "{error:e} for {allowed:e}");
+            assert!(
+                shares(false).plan(allowed, usize::MAX).elements >= plan.elements + 2,
+                "two pairs are joined"
+            );
+        }
+        assert!(shares(true).plan(1e-9, 12).elements <= 12);
+        assert_eq!(shares(false).plan(1.0, usize::MAX).elements, 8);
+    }
+
+    #[test]
+    fn remeshing_keeps_the_beam_covered() {
+        let model = scene();
+        let shares = [1e-3, 1e-9, 1e-9, 1e-9, 1e-9, 1e-5, 1e-7, 1e-4];
+        let mut memory: Vec<Place<f64, _>> = mesh(&model, &shares);
+        memory.resize(40, Place::default());
+        let plan = Shares { places: &memory[..8], shares: 1, join: true }.plan(1e-5, 40);
+        remesh(&model, &mut memory[..], 8, 0, plan).unwrap();
+        let mut left = 0.0;
+        for place in &memory[..plan.elements] {
+            assert!((place.element.right - place.element.h - left).abs() < 1e-15);
+            left = place.element.right;
+        }
+        assert_eq!(left, 1.0);
+        assert!(memory[plan.elements - 1].element.stop && !memory[0].element.stop);
+        let refused = remesh(&model, &mut memory[..4], 4, 0, Plan { most: 1e-9, elements: 5, join: false });
+        assert_eq!(refused, Err(Error::Capacity { needed: 5, available: 4 }));
+    }
+}

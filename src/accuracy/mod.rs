@@ -15,7 +15,9 @@ use crate::real::Real;
 use crate::scene::Model;
 use crate::solution::Solution;
 use crate::storage::Storage;
+use bound::Bounds;
 use distance::Distance;
+use divide::Shares;
 
 /// How many elements of the finer mesh a certificate divides an element into.
 const PARTS: usize = 4;
@@ -55,7 +57,7 @@ impl<T: Real, M: Model<T>> Solution<'_, T, M> {
     #[must_use]
     pub fn distance(&self, finer: &Solution<'_, T, M>) -> Option<T> {
         let distance = Distance::between(self, finer)?;
-        Some(distance.bending / finer.imbalance().size)
+        Some(distance.bending / distance.size)
     }
 
     /// Bounds and estimates the error by a solve on a mesh four times as fine, which starts from this solution.
@@ -86,8 +88,9 @@ impl<T: Real, M: Model<T>> Solution<'_, T, M> {
     /// settings out of range.
     ///
     /// # Cost
-    /// Memory for four times the elements. A solve on the finer mesh, two or three visits of each of its elements as a
-    /// rule (they are in the report), and about as much again for the norms.
+    /// Memory for four times the elements; more where they do not resolve the contact's layers, as far as there is.
+    /// A solve on the finer mesh, five visits of each of its elements as a rule (they are in the report), and about as
+    /// much again for the norms.
     pub fn certify<S: Storage<T, M> + ?Sized>(
         &self,
         memory: &mut S,
@@ -110,13 +113,46 @@ impl<T: Real, M: Model<T>> Solution<'_, T, M> {
                 place.element.soften(scene.foundation().law);
             }
         }
-        let answer = nested::sharpen(scene, places, 1.0, settings);
-        let finer = Solution::new(scene, places, answer);
+        let (mut elements, mut visits, mut pass) = (needed, 0, 1);
+        loop {
+            let places = &mut memory.places(elements)[..elements];
+            let mut answer = nested::sharpen(scene, places, 1.0, settings);
+            visits += answer.report.element_visits;
+            answer.report.element_visits = visits;
+            let imbalance = bound::imbalance(scene, places, &answer);
+            let finer = Solution::new(scene, &*places, answer);
+            let distance = Distance::between(self, &finer).ok_or(Error::Capacity { needed, available })?;
+            let bounds =
+                finer.robustness().filter(|_| !self.rigid).map(|kappa| finer.bounds(imbalance, kappa));
+            let certificate = Certificate::of::<M>(&distance, bounds, answer.report);
+            // Where layers of the contact are not resolved the second term outweighs the first: finer there.
+            let allowed = T::of(SECOND) * distance.bending;
+            if bounds.is_none()
+                || imbalance.mismatch <= allowed
+                || !answer.report.is_solved()
+                || pass == PASSES
+            {
+                return Ok(certificate);
+            }
+            let shares = Shares { places, shares: 1 - answer.state, join: false };
+            let plan = shares.plan(T::of(0.25) * allowed * allowed, usize::MAX);
+            if plan.elements <= elements || memory.places(plan.elements).len() < plan.elements {
+                return Ok(certificate);
+            }
+            divide::remesh(scene, memory, elements, answer.state, plan)?;
+            (elements, pass) = (plan.elements, pass + 1);
+        }
+    }
+}
 
-        let nested = Error::Capacity { needed, available };
-        let distance = Distance::between(self, &finer).ok_or(nested)?;
+/// The second term of the bound over the first, above which it is lowered.
+const SECOND: f64 = 0.2;
+/// Finer meshes at most.
+const PASSES: usize = 8;
+
+impl<T: Real> Certificate<T> {
+    fn of<M: Model<T>>(distance: &Distance<T>, bounds: Option<Bounds<T>>, report: Report<T>) -> Self {
         let finite = |bound: T| bound.is_finite().then_some(bound);
-        let bounds = finer.robustness().filter(|_| !self.rigid).map(|kappa| finer.bounds(kappa));
         let relative = |distance: T, bound: T, size: T| {
             let whole = distance + bound;
             finite(if whole == T::zero() { whole } else { whole / (size - bound).max(T::zero()) })
@@ -126,7 +162,7 @@ impl<T: Real, M: Model<T>> Solution<'_, T, M> {
             T::of(4.0) * T::epsilon() + if error == T::zero() { error } else { error / size }
         };
         let present = |present: bool, number: T| present.then_some(number);
-        Ok(Certificate {
+        Self {
             bending_bound: bounds.and_then(|b| relative(distance.bending, b.bending, b.bending_size)),
             electric_bound: bounds
                 .filter(|_| crate::electric::present::<T, M>())
@@ -134,7 +170,7 @@ impl<T: Real, M: Model<T>> Solution<'_, T, M> {
             bending_estimate: estimate(distance.fields[0]),
             stretching_estimate: present(M::Axial::PRESENT, estimate(distance.fields[1])),
             potential_estimate: present(M::Permittivity::PRESENT, estimate(distance.fields[2])),
-            report: answer.report,
-        })
+            report,
+        }
     }
 }

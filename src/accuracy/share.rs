@@ -55,28 +55,32 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
     pub(super) fn share(&self, load: T, moved: &State<T>) -> Share<T> {
         let (element, h) = (self.element, self.element.h);
         let length = self.scene.length();
-        let points = [0.0, 0.25, 0.5, 0.75, 1.0].map(T::of);
+        let points = [0.0, 0.125, 0.25, 0.5, 0.75, 0.875, 1.0].map(T::of);
+        let c = T::of(0.25) * element.bending.yy * h;
         // The foundation's tangent stiffness, and what the cubic leaves of the load.
         let (mut stiffness, mut open) = (T::zero(), T::zero());
-        let mut touching = 0;
         for t in points {
-            let tangent = self.tangent(t);
-            touching += usize::from(tangent > T::zero());
+            let net = self.net(t);
+            // Between its nodes the beam departs from the cubic; that may be where it touches.
+            let room = t * (T::one() - t);
+            let depth =
+                self.eta.at(t).max(self.eta.at(t) + net * h.powi(4) * room * room / (T::of(24.0) * c));
+            let tangent = self.tangent(t, depth);
             stiffness = stiffness.max(tangent);
-            open = open.max(self.net(t).abs());
+            open = open.max(net.abs());
         }
-        let c = T::of(0.25) * element.bending.yy * h;
         let stiff = stiffness * h.powi(4) / (T::of(504.0) * c);
-        // Between its nodes the beam departs from the cubic by open h^4 t^2 (1 - t)^2 / 24 C, of mean / 720 C.
+        // The departure is open h^4 t^2 (1 - t)^2 / 24 C; its mean is a thirtieth of that without t.
         let force = stiffness * open * h.powi(5) / (T::of(720.0) * c * (T::one() + stiff));
         // How much a load here moves the beam where it moves most: its mean over the beam is known, and where the
         // beam is held on both sides by the foundation it moves within the layer's width only.
         let yielding = Motion::new(h, moved.e, moved.d).cubic();
         let mean = points.into_iter().fold(T::zero(), |m, t| m.max(yielding.at(t).abs())) / load;
         let mut weight = T::of(3.0) * mean / length;
-        if touching > 0 && touching < points.len() && stiff > T::one() {
-            // A contact edge that is not resolved is not yet in its place, and the beam yields otherwise there.
-            weight = T::of(4.0) * weight;
+        if stiff > T::one() && !self.eta.crossings(T::zero()).is_empty() {
+            // A contact edge that is not resolved is not yet in its place, and the beam does not yet yield as it will:
+            // anywhere in the element there may be the support of a span of the beam's length.
+            weight = (T::of(16.0) * weight).max(h * h * length / (T::of(16.0) * c));
         }
         if stiffness > T::zero() {
             let layer = (T::of(4.0) * c / stiffness).sqrt().sqrt().min(length);

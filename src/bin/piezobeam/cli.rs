@@ -19,12 +19,13 @@ Examples:
 
 Exit status:
   0  the solve converged (check, paper, time, extremes: all went well)
-  1  the solve did not converge; the best iterate is still reported, marked as such
+  1  the solve did not converge, or not to the --tolerance; the best iterate is still reported, marked as such
   2  bad input: the command line, the scene file, or an output that cannot be written";
 
 const SOLVE: &str = "\
 Examples:
   piezobeam solve beam.toml --elements 400
+  piezobeam solve beam.toml --tolerance 1e-8
   piezobeam solve beam.toml --samples 101 --format csv --out beam.csv
   piezobeam solve beam.toml --format json --out beam.json --plot beam.svg --force
   piezobeam solve beam.toml --sensitivities
@@ -77,6 +78,10 @@ pub struct SolveArgs {
     /// Number of elements over the length of the beam [default: what the scene asks for]
     #[arg(long, value_name = "N", value_parser = elements())]
     pub elements: Option<usize>,
+    /// Make a mesh for this relative error of bending, such as 1e-8; the elements asked for are where it starts
+    /// [default: 16]
+    #[arg(long, value_name = "ERROR", value_parser = tolerance)]
+    pub tolerance: Option<f64>,
     /// Floating-point type of the solve; the report is in f64 in either case
     #[arg(long, value_enum, value_name = "TYPE", default_value_t = Precision::F64)]
     pub precision: Precision,

@@ -31,6 +31,9 @@ const PICTURE_SAMPLES: usize = 513;
 /// Points among which a summary looks for extremes.
 const TEXT_SAMPLES: usize = 2001;
 
+/// Elements on which the search for a mesh starts.
+const FIRST_ELEMENTS: usize = 16;
+
 /// How a run ends: 0 converged, 1 not converged, 2 bad input (as an `Err`).
 type Outcome = Result<bool, Box<dyn std::error::Error>>;
 
@@ -58,8 +61,10 @@ fn solve(args: &SolveArgs) -> Outcome {
     }
     let file = scene_file::read(&args.scene)?;
     let run = |samples| {
-        let task = tasks::Solve { stop: args.stop, samples, sensitivities: args.sensitivities };
-        model::with(&file, args.elements, args.precision, task).map_err(|e| file.complaint(&e))
+        let SolveArgs { stop, tolerance, sensitivities, .. } = *args;
+        let task = tasks::Solve { stop, tolerance, samples, sensitivities };
+        let elements = args.elements.or(tolerance.map(|_| FIRST_ELEMENTS));
+        model::with(&file, elements, args.precision, task).map_err(|e| file.complaint(&e))
     };
     let solved = run(args.samples)?;
     let converged = solved.report.converged();
@@ -81,10 +86,13 @@ fn solve(args: &SolveArgs) -> Outcome {
     }
     output::write_all(&files, args.force)?;
     if !converged && args.format != Format::Text {
-        let reason = picture.report.reason.unwrap_or_default();
+        let reason = picture.report.reason.as_deref().unwrap_or_default();
         eprintln!("piezobeam: not converged ({}): {reason}", picture.report.status);
     }
-    Ok(converged)
+    if let Some(missed) = picture.report.missed() {
+        eprintln!("piezobeam: the tolerance {:e} was not reached: {}", missed.tolerance, missed.meaning);
+    }
+    Ok(converged && picture.report.missed().is_none())
 }
 
 fn check(args: &CheckArgs) -> Outcome {

@@ -42,7 +42,8 @@ pub fn run(out: &Path) -> Result<Paper, Box<dyn std::error::Error>> {
     let mut notes = String::new();
     for (name, what, text) in SCENES {
         let file = scene_file::parse(text, &format!("{name}.toml"))?;
-        let task = tasks::Solve { stop: None, samples: PICTURE_SAMPLES, sensitivities: false };
+        let task =
+            tasks::Solve { stop: None, tolerance: None, samples: PICTURE_SAMPLES, sensitivities: false };
         let solved = model::with(&file, None, Precision::F64, task).map_err(|e| file.complaint(&e))?;
         let mut page = picture(&file, solved);
         page.title = format!("{name}: {what}");

@@ -8,6 +8,9 @@ use serde::Serialize;
 /// The status of a solve that met its stopping test.
 pub const CONVERGED: &str = "converged";
 
+/// Errors are bounded and estimated on meshes of so many elements at most: it takes a mesh four times as fine.
+pub const CERTIFIED: usize = 50_000;
+
 /// The result of `solve`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report {
@@ -22,6 +25,17 @@ pub struct Report {
     pub elements: usize,
     /// Relative residual of the reported solution.
     pub residual: f64,
+    /// Guaranteed bound on the error of the discrete bending in the energy norm, relative; `None` where theory gives
+    /// none, or for more than [`CERTIFIED`] elements.
+    pub error_bound: Option<f64>,
+    /// Estimate of the largest error of bending, relative to the largest bending.
+    pub error_estimate: Option<f64>,
+    /// The same two of stretching and potential, together and each.
+    pub electric_error_bound: Option<f64>,
+    pub stretching_error_estimate: Option<f64>,
+    pub potential_error_estimate: Option<f64>,
+    /// `None` unless the mesh was made for a tolerance.
+    pub adaptive: Option<Adaptive>,
     pub warnings: Vec<String>,
     pub samples: Samples,
     /// `None` where the scene has no foundation.
@@ -32,6 +46,19 @@ pub struct Report {
     pub precision: String,
     /// `None` where they were not asked for.
     pub sensitivities: Option<Sensitivities>,
+}
+
+/// How a mesh was made for an accuracy.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Adaptive {
+    /// The relative error of bending that was asked for.
+    pub tolerance: f64,
+    /// `tolerance` if it was reached; `floor`, `capacity` or `unsolved` say why not.
+    pub reached: String,
+    /// The same in a sentence.
+    pub meaning: String,
+    /// Meshes solved on.
+    pub passes: usize,
 }
 
 /// Derivatives of outputs to the parameters of the scene.
@@ -169,5 +196,10 @@ pub struct Timing {
 impl Report {
     pub fn converged(&self) -> bool {
         self.status == CONVERGED
+    }
+
+    /// What was asked for beyond convergence, and was not reached.
+    pub fn missed(&self) -> Option<&Adaptive> {
+        self.adaptive.as_ref().filter(|adaptive| adaptive.reached != "tolerance")
     }
 }

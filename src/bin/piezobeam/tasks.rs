@@ -1,9 +1,13 @@
 //! What the commands do with a scene: solve it, check it, time it.
 
 use crate::model::Task;
-use crate::report::{Contact, Reaction, Report, Resultants, Samples, Timing, Uniqueness};
+use crate::report::{
+    Adaptive, CERTIFIED, Contact, Reaction, Report, Resultants, Samples, Timing, Uniqueness,
+};
 use crate::sensitivities;
-use piezobeam::{Error, Fields, HeapWorkspace, Model, Problem, Real, Settings, Solution, Status};
+use piezobeam::{
+    Error, Fields, HeapWorkspace, Mesh, Model, Problem, Reached, Real, Settings, Solution, Status,
+};
 use std::time::Instant;
 
 /// A solved scene with its fields at uniform points, and the gap there.
@@ -12,10 +16,16 @@ pub struct Solved {
     pub gap: Option<Vec<f64>>,
 }
 
+/// Where an accuracy was missed it is asked for again, so many times stricter, and no stricter than that in all.
+const STRICTER: f64 = 0.1;
+const STRICTEST: f64 = 1e-3;
+
 /// Solve, and sample the fields at `samples` uniform points, ends included.
 pub struct Solve {
     /// `None`: the library's default.
     pub stop: Option<f64>,
+    /// Relative accuracy for which the mesh is made; `None`: the mesh is the problem's own.
+    pub tolerance: Option<f64>,
     pub samples: usize,
     pub sensitivities: bool,
 }
@@ -23,11 +33,66 @@ pub struct Solve {
 impl Task for Solve {
     type Output = Solved;
     fn run<T: Real, M: Model<T>>(self, problem: Problem<'_, T, M>) -> Result<Solved, Error> {
-        let mut memory = HeapWorkspace::new();
-        let mut prepared = problem.prepare(&mut memory)?;
-        let mut solved = solved(&prepared.solution(&settings::<T>(self.stop))?, self.samples);
+        let settings = settings::<T>(self.stop);
+        let (mut memory, mut nodes) = (HeapWorkspace::new(), Vec::new());
+        let mut solved = if let Some(tolerance) = self.tolerance {
+            let mut asked = tolerance;
+            loop {
+                let found = problem.solve_to(&mut memory, T::of(asked), &settings)?;
+                let mut solved = self.solved(&found.solution, &settings)?;
+                // The certificate knows the error better than the meshes do.
+                let missed = solved.report.error_estimate.is_some_and(|error| error > tolerance);
+                if missed && found.reached == Reached::Tolerance && asked > STRICTEST * tolerance {
+                    asked *= STRICTER;
+                    continue;
+                }
+                let reached = if missed && found.reached == Reached::Tolerance {
+                    Reached::Capacity
+                } else {
+                    found.reached
+                };
+                solved.report.adaptive = Some(Adaptive {
+                    tolerance,
+                    reached: reached.name().into(),
+                    meaning: reached.to_string(),
+                    passes: found.passes,
+                });
+                if self.sensitivities {
+                    nodes.extend(found.solution.nodes());
+                }
+                break solved;
+            }
+        } else {
+            self.solved(&problem.solve(&mut memory, &settings)?, &settings)?
+        };
         if self.sensitivities {
+            // On the mesh that was made.
+            let problem = if nodes.is_empty() { problem } else { problem.on(Mesh::Nodes(&nodes))? };
+            let mut memory = HeapWorkspace::new();
+            let mut prepared = problem.prepare(&mut memory)?;
+            prepared.solve(&settings)?;
             solved.report.sensitivities = Some(sensitivities::of(&mut prepared));
+        }
+        Ok(solved)
+    }
+}
+
+impl Solve {
+    /// The report of a solution, with what is known of its error.
+    fn solved<T: Real, M: Model<T>>(
+        &self,
+        solution: &Solution<'_, T, M>,
+        settings: &Settings<T>,
+    ) -> Result<Solved, Error> {
+        let mut solved = solved(solution, self.samples);
+        let report = &mut solved.report;
+        if report.converged() && report.elements <= CERTIFIED {
+            let found = solution.certify(&mut HeapWorkspace::new(), settings)?;
+            report.error_bound = found.bending_bound.map(Real::f64);
+            report.error_estimate = Some(found.bending_estimate.f64());
+            report.electric_error_bound = found.electric_bound.map(Real::f64);
+            report.stretching_error_estimate = found.stretching_estimate.map(Real::f64);
+            report.potential_error_estimate = found.potential_estimate.map(Real::f64);
         }
         Ok(solved)
     }
@@ -123,6 +188,12 @@ fn solved<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>, samples: usize) -
         element_visits: report.element_visits as u64,
         elements: report.elements,
         residual: report.residual.f64(),
+        error_bound: None,
+        error_estimate: None,
+        electric_error_bound: None,
+        stretching_error_estimate: None,
+        potential_error_estimate: None,
+        adaptive: None,
         warnings: solution.warnings().iter().map(ToString::to_string).collect(),
         samples: Samples {
             x: column(|f| f.x),

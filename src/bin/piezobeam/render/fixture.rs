@@ -28,6 +28,12 @@ fn base(title: &str, length: f64, bending: impl Fn(f64) -> f64) -> Picture {
             element_visits: 812,
             elements: 100,
             residual: 3.2e-13,
+            error_bound: Some(2.9e-4),
+            error_estimate: Some(1.2e-8),
+            electric_error_bound: None,
+            stretching_error_estimate: None,
+            potential_error_estimate: None,
+            adaptive: None,
             warnings: vec![],
             samples: Samples {
                 x: sample(&|x| x),

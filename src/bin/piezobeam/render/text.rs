@@ -151,6 +151,30 @@ pub fn results(picture: &Picture) -> Vec<(String, String)> {
     let error = significant(r.equilibrium_error, 2);
     row("out of balance", format!("{error} of the largest force"));
     row("uniqueness", uniqueness(&report.uniqueness));
+    if let Some(estimate) = report.error_estimate {
+        row("error of bending", format!("about {} of the largest", significant(estimate, 2)));
+        row(
+            "",
+            match report.error_bound {
+                Some(bound) => format!(
+                    "guaranteed: at most {} in the energy norm, of the mesh's cubics",
+                    significant(bound, 3)
+                ),
+                None => "not guaranteed: theory gives no bound here".into(),
+            },
+        );
+    }
+    if let Some(adaptive) = &report.adaptive {
+        let asked = significant(adaptive.tolerance, 3);
+        row(
+            "mesh",
+            format!(
+                "made for an error of {asked} in {}: {}",
+                counted(adaptive.passes, "pass"),
+                adaptive.meaning
+            ),
+        );
+    }
     rows
 }
 
