@@ -22,7 +22,7 @@ mod table;
 
 use toml::de::DeTable;
 
-pub use error::FileError;
+pub use error::{FileError, printable};
 
 pub use profile::ProfileSpec;
 pub use sections::{BeamTable, ConductionTable, FoundationTable, LoadTable, MeshTable, PotentialTable};
