@@ -123,3 +123,9 @@ pub const RECIPROCAL: f64 = 1e-11;
 pub const EULER: f64 = 1e-8;
 /// Derivatives in single precision.
 pub const DERIVATIVE_SINGLE: f64 = 2e-3;
+
+/// What plain sums over a solution's fields may be off by, relative to the sizes of their terms: a check of another
+/// kind than the residual, whose kinks and differences of nodal values are those of a naive program ...
+pub const HONEST: f64 = 1e-4;
+/// ... or so many residuals of the solve, or estimates of its rounding.
+pub const HONEST_RESIDUALS: f64 = 1e3;
