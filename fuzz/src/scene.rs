@@ -1,16 +1,13 @@
-//! Scenes of any numbers through the library, as a plain function of a byte string.
+//! Scenes of any numbers through the library.
 
-mod number;
-mod profile;
-mod property;
-
+use crate::form::{Any, Form};
+use crate::number::{self, Number, Position};
+use crate::property;
 use arbitrary::{Arbitrary, Unstructured};
-use number::{Number, Position};
 use piezobeam::{
     Beam, Conduction, Foundation, Law, Linear, Load, Mesh, PointLoad, Potential, Power, Profile, Real, Scene,
     Settings, Smooth, Tabulated,
 };
-use profile::{Any, Form};
 use std::fmt::Debug;
 
 /// Which parts the scene has, and of which types.

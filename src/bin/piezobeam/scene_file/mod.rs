@@ -26,7 +26,7 @@ pub use error::{FileError, printable};
 
 pub use profile::ProfileSpec;
 pub use sections::{BeamTable, ConductionTable, FoundationTable, LoadTable, MeshTable, PotentialTable};
-pub use source::read;
+pub use source::{from_bytes, read};
 
 use error::quoted;
 use lines::{FieldLines, LineStarts};
