@@ -1,6 +1,7 @@
 //! Special values of the number format in all places of a scene, a few at a time: each scene is refused with the name of
 //! a field that has one, ends with a status, or is converged; and what is called converged is finite and, by
 //! sums that share no code with the solver, in equilibrium and in one piece.
+#![allow(clippy::expect_used, reason = "a test that cannot go on fails")]
 
 mod common;
 

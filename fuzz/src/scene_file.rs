@@ -5,7 +5,7 @@ use crate::reader;
 /// Bytes are refused with one printable line of bounded length that begins with the file's name, or are a scene, whose
 /// description and profiles can be asked for, in any order of what is not a number.
 pub fn scene_file(data: &[u8]) {
-    match reader::from_bytes(data, "scene.toml") {
+    match reader::source::from_bytes(data, "scene.toml") {
         Err(error) => {
             let message = error.to_string();
             assert!(message.starts_with("scene.toml:"), "{message:?}");

@@ -16,7 +16,7 @@ mod number;
 mod profile;
 mod profile_form;
 mod sections;
-mod source;
+pub mod source;
 mod suggestion;
 mod table;
 
@@ -26,7 +26,7 @@ pub use error::{FileError, printable};
 
 pub use profile::ProfileSpec;
 pub use sections::{BeamTable, ConductionTable, FoundationTable, LoadTable, MeshTable, PotentialTable};
-pub use source::{from_bytes, read};
+pub use source::read;
 
 use error::quoted;
 use lines::{FieldLines, LineStarts};
