@@ -360,9 +360,9 @@ fn many_loads_and_breaks_take_no_square_of_their_number() {
     }
 }
 
-/// What needs files, pipes and limits as Unix has them.
-#[cfg(unix)]
-mod unix {
+/// What needs devices, pipes and limits as Linux has them.
+#[cfg(target_os = "linux")]
+mod linux {
     use super::*;
     use std::os::unix::fs::symlink;
     use std::path::Path;
