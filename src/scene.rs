@@ -451,11 +451,8 @@ pub(crate) fn next_break<T: Real, M: Model<T>>(model: &M, x: T) -> T {
     see(conduction.mu2.breaks());
     see(load.transverse.breaks());
     see(load.axial.breaks());
-    for point in load.points {
-        if point.x > x + tiny {
-            next = next.min(point.x);
-            break;
-        }
+    if let Some(point) = load.points.get(load.points.partition_point(|point| point.x <= x + tiny)) {
+        next = next.min(point.x);
     }
     if next > length - tiny { length } else { next }
 }

@@ -411,7 +411,8 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
     /// Transverse load less contact at t \[N/m\].
     pub(crate) fn net(&self, t: T) -> T {
         let [p, drive] = self.forces(t);
-        self.scene.load().transverse.value(self.element.x(t), self.mid) - p - drive
+        // Forces of the foundation first: an attraction may all but cancel a pressure far larger than the load.
+        self.scene.load().transverse.value(self.element.x(t), self.mid) - (p + drive)
     }
 
     /// Moment and shear at t, from the left node by equilibrium.
@@ -437,21 +438,26 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
     /// How much of what integrating the curvature adds to the element's own cubic is to be believed, from 0 to 1.
     ///
     /// Integrating is one step of a fixed point for the bending between the nodes: it multiplies the error of
-    /// the penetration by k h^4 / (4.73^4 C), 4.73 the first root of the clamped beam. Where that is above one and
+    /// the penetration by k h^4 / (4.73^4 C), k with what conduction adds to it, 4.73 the first root of the clamped beam. Where that is above one and
     /// the element is in contact the cubic is better; where it is free, what is added must not lead into the
     /// foundation. (So fields depend continuously on the state.)
     fn trust(&self) -> T {
-        if !M::Law::PRESENT {
+        if !M::Law::PRESENT && !M::Mu1::PRESENT {
             return T::one();
         }
-        let law = self.scene.foundation().law;
+        let (law, conduction) = (self.scene.foundation().law, self.scene.conduction());
         let stiffness = self.scene.beam().bending.value(self.mid, self.mid);
         let h = self.element.h;
         let soft = stiffness / h / h / h / h;
         let points = [0.0, 0.25, 0.5, 0.75, 1.0].map(T::of);
         let held = |t: T| {
             let x = self.element.x(t);
-            law.pressure(self.stiffness(x), x, self.eta.at(t).abs()).1 > T::of(500.6) * soft
+            let mut slope = law.pressure(self.stiffness(x), x, self.eta.at(t).abs()).1;
+            if M::Mu1::PRESENT {
+                let drive = truncate(self.q.at(t), conduction.potential_truncation).0;
+                slope = slope + (conduction.mu1.value(x, self.mid) * drive).abs();
+            }
+            slope > T::of(500.6) * soft
         };
         if !points.into_iter().any(held) {
             return T::one();
@@ -520,9 +526,21 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
         self.ratio.gradients::<M>(&k, tau, displacement)
     }
 
+    /// The integral of u' or q' over x from t to the right node.
+    fn gathered(&self, t: T, gradient: fn((T, T)) -> T) -> T {
+        let gradient = |y: T| gradient(self.gradients(y));
+        // The current makes kinks of the gradients where the contact has its own.
+        let integral = if M::Mu2::PRESENT {
+            self.between(T::zero(), t, gradient)
+        } else {
+            integrate::<T, 4>(T::zero(), t, gradient)
+        };
+        self.element.h * integral
+    }
+
     /// Potential at t.
     pub(crate) fn potential(&self, t: T) -> T {
-        self.right.q.get() - self.element.h * integrate::<T, 4>(T::zero(), t, |y| self.gradients(y).1)
+        self.right.q.get() - self.gathered(t, |(_, q)| q)
     }
 
     fn axial_strain(&self, x: T) -> T {
@@ -559,8 +577,7 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
 
         let (tau, displacement) = self.fluxes(t);
         let sigma = self.ratio.sigma(tau, displacement);
-        let stretching = M::Axial::PRESENT
-            .then(|| self.right.u.get() - h * integrate::<T, 4>(zero, t, |y| self.gradients(y).0));
+        let stretching = M::Axial::PRESENT.then(|| self.right.u.get() - self.gathered(t, |(u, _)| u));
         let potential = M::Permittivity::PRESENT.then(|| self.potential(t));
         let grounded = M::Law::PRESENT || M::Gap::PRESENT || M::Mu1::PRESENT || M::Mu2::PRESENT;
         Fields {

@@ -153,11 +153,17 @@ impl<T: Real, M: Model<T>> Place<T, M> {
         let State { e, d } = self.work.states[state];
         let Node { u, tau, q, charge } = self.work.node;
         let (tau, charge) = (tau.get(), charge.get());
-        let slope = self.element.deforming_force(e).y() / self.element.bending.yy;
-        let bending = d.x().abs() + d.y().abs() + slope.abs() * (T::one() + self.element.h);
+        // Fields inside are integrals of the curvature, some slopes over the length.
+        let (slope, h) = (self.element.deforming_force(e).y() / self.element.bending.yy, self.element.h);
+        let bending = d.x().abs() + d.y().abs() + slope.abs() * (T::one() + h + T::one() / h);
         let electric = u.get().abs() + tau.abs() + q.get().abs() + charge.abs();
         let sum = bending + electric + ratio.sigma(tau, charge).abs();
         (sum * T::of(1e8)).is_finite()
+    }
+
+    /// Is the beam bent in the element?
+    pub(crate) fn is_bent(&self, state: usize) -> bool {
+        self.work.states[state].e + self.element.gap.bend::<T>() != T::Vec2::default()
     }
 }
 
@@ -215,7 +221,8 @@ impl<T: Real, M: Model<T>> Storage<T, M> for [Place<T, M>] {
     }
 }
 
-/// Memory on the heap, which grows when a scene is laid into it and never during a solve.
+/// Memory on the heap, which grows when a scene is laid into it and never during a solve. Where it cannot grow, that is
+/// [`Error::Capacity`](crate::Error::Capacity).
 #[cfg(feature = "alloc")]
 pub struct HeapWorkspace<T: Real, M: Model<T>> {
     places: alloc::vec::Vec<Place<T, M>>,
@@ -244,7 +251,9 @@ impl<T: Real, M: Model<T>> Default for HeapWorkspace<T, M> {
 impl<T: Real, M: Model<T>> Storage<T, M> for HeapWorkspace<T, M> {
     fn places(&mut self, elements: usize) -> &mut [Place<T, M>] {
         let room = elements.saturating_add(elements / 3).saturating_add(64);
-        if self.places.len() < room {
+        let lacks = room.saturating_sub(self.places.len());
+        // Memory that cannot be had is an error of who asked for it, not the end of the program.
+        if lacks > 0 && self.places.try_reserve_exact(lacks).is_ok() {
             self.places.resize(room, Place::default());
         }
         &mut self.places

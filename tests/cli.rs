@@ -2,46 +2,16 @@
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic, reason = "a test that panics has failed")]
 #![cfg(feature = "cli")]
 
+#[path = "common/program.rs"]
+mod program;
+
+use program::{HALVES, folder, piezobeam, refusal, text, write};
 use serde_json::Value;
-use std::path::Path;
-use std::process::{Command, Output};
-
-const HALVES: &str = include_str!("../scenes/halves.toml");
-
-fn piezobeam(folder: &Path, line: &str) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_piezobeam"))
-        .args(line.split_whitespace())
-        .current_dir(folder)
-        .output()
-        .expect("the program runs")
-}
-
-fn folder() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().expect("a folder");
-    write(&folder, "halves.toml", HALVES);
-    folder
-}
-
-fn write(folder: &tempfile::TempDir, name: &str, text: &str) {
-    std::fs::write(folder.path().join(name), text).expect("a file");
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
 
 fn json(folder: &tempfile::TempDir, line: &str) -> Value {
     let output = piezobeam(folder.path(), line);
     assert_eq!(output.status.code(), Some(0), "{line}: {}", text(&output.stderr));
     serde_json::from_slice(&output.stdout).expect("JSON")
-}
-
-/// The one line that a run with exit status 2 says.
-fn refusal(folder: &tempfile::TempDir, line: &str) -> String {
-    let output = piezobeam(folder.path(), line);
-    assert_eq!(output.status.code(), Some(2), "{line}: {}", text(&output.stdout));
-    assert!(output.stdout.is_empty(), "{line} printed a result");
-    text(&output.stderr).trim_end().to_owned()
 }
 
 #[test]

@@ -118,11 +118,11 @@ impl<T: Real, M: Model<T>> Element<T, M> {
         expect(fits, "beam.bending", Place::At(mid.f64()), what, stiffness[0])?;
         let transverse = span.samples("load.transverse", |x| load.transverse.value(x, mid))?;
         let (fe, mut fr) = hermite::loads(h, transverse);
-        for point in load.points {
-            // Points within rounding of a node are its own (as `next_break` has it).
-            if (point.x - right).abs() <= T::of(16.0) * T::epsilon() * model.length() {
-                fr += T::Vec2::of(point.force, point.moment);
-            }
+        // Points within rounding of a node are its own (as `next_break` has it).
+        let tiny = T::of(16.0) * T::epsilon() * model.length();
+        let first = load.points.partition_point(|point| right - point.x > tiny);
+        for point in load.points[first..].iter().take_while(|point| point.x - right <= tiny) {
+            fr += T::Vec2::of(point.force, point.moment);
         }
         let law = span.samples("foundation.stiffness", |x| foundation.law.coefficient(x, mid))?;
         let law = span.not_negative(law, "foundation.stiffness")?;

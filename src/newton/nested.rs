@@ -210,7 +210,12 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
         };
         // Moments may balance where displacements or fluxes are beyond the number format.
         let ratio = self.places.first().map(|place| electric::Ratio::of(&place.element));
-        let beyond = |p: &Place<T, M>| ratio.is_some_and(|ratio| !p.is_finite(self.current, &ratio));
+        // And where all moments are below it nothing was balanced.
+        let weightless = self.best.is_some_and(|(_, best)| best.size == T::zero());
+        let beyond = |p: &Place<T, M>| {
+            ratio.is_some_and(|ratio| !p.is_finite(self.current, &ratio))
+                || (weightless && p.is_bent(self.current))
+        };
         let status = match self.places.iter().position(beyond) {
             Some(element) if status == Status::Converged => Status::Breakdown { element },
             _ => status,

@@ -45,6 +45,8 @@ pub(crate) mod pair;
 pub(crate) mod quad;
 
 #[cfg(test)]
+pub(crate) mod fault;
+#[cfg(test)]
 mod oracle;
 
 use crate::real::Real;
@@ -152,6 +154,8 @@ impl<T: Real, B: Block<T>> End<T, B> {
         element: &Stamp<T, B>,
         h: T,
     ) -> Option<(Condensed<T, B>, Factor<T, B>)> {
+        #[cfg(test)]
+        fault::strike()?;
         if !B::holds(self.held) {
             // An end on springs, or free, is a part like any other; as soft as it is, d_left would cancel.
             return before.absorb(element, h);
@@ -166,6 +170,8 @@ impl<T: Real, B: Block<T>> End<T, B> {
     /// The last node's unknowns, where all elements were condensed from the other side.
     #[inline]
     pub(crate) fn close(&self, part: &Condensed<T, B>) -> Option<B::Vector> {
+        #[cfg(test)]
+        fault::strike()?;
         let a = part.s + self.condensed.s;
         let load = part.b + self.condensed.b - B::energy_times(&a, self.value);
         let (_, free) = B::divide_free(&a, &B::NONE, load, self.held)?;
@@ -216,6 +222,8 @@ impl<T: Real, B: Block<T>> Condensed<T, B> {
     /// The element to the right of this node joins; `None` if its pivot breaks down.
     #[inline(always)]
     pub(crate) fn absorb(&self, element: &Stamp<T, B>, h: T) -> Option<(Self, Factor<T, B>)> {
+        #[cfg(test)]
+        fault::strike()?;
         let a = self.s + element.ee;
         let load = self.b + element.fe;
         if B::outweighs(&self.s, &element.ee) {
@@ -235,6 +243,8 @@ impl<T: Real, B: Block<T>> Condensed<T, B> {
     /// The unknowns of the node between this part and `other`.
     #[inline]
     pub(crate) fn meet(&self, other: &Self) -> Option<B::Vector> {
+        #[cfg(test)]
+        fault::strike()?;
         let (_, d) = B::divide(&(self.s + other.s), &B::NONE, self.b + other.b)?;
         Some(d)
     }

@@ -7,6 +7,7 @@ use piezobeam::{
 };
 use serde_json::Value;
 
+pub mod honest;
 pub mod random;
 pub mod strong;
 pub mod tolerances;

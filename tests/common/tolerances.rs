@@ -136,3 +136,9 @@ pub const ESTIMATE_FLOOR: f64 = 1e-13;
 pub const ADAPTIVE_VISITS: (usize, usize) = (6, 2000);
 /// What the references of bounds may lack of the error, of their own.
 pub const REFERENCE: f64 = 1e-6;
+
+/// What plain sums over a solution's fields may be off by, relative to the sizes of their terms: a check of another
+/// kind than the residual, whose kinks and differences of nodal values are those of a naive program ...
+pub const HONEST: f64 = 1e-4;
+/// ... or so many residuals of the solve, or estimates of its rounding.
+pub const HONEST_RESIDUALS: f64 = 1e3;

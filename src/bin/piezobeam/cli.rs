@@ -4,6 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::output;
 use clap::builder::RangedU64ValueParser;
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
@@ -136,7 +137,7 @@ pub struct TimeArgs {
     pub elements: Option<usize>,
     /// Number of solves to measure, each from the same cold start
     #[arg(long, value_name = "R", default_value_t = 100,
-          value_parser = RangedU64ValueParser::<usize>::new().range(1..))]
+          value_parser = RangedU64ValueParser::<usize>::new().range(1..=1_000_000))]
     pub repeat: usize,
     /// Floating-point type of the solve
     #[arg(long, value_enum, value_name = "TYPE", default_value_t = Precision::F64)]
@@ -206,7 +207,9 @@ impl Cli {
         if args.sensitivities && args.format == Format::Csv {
             return Some("csv holds samples only; ask for --sensitivities with --format text or json".into());
         }
-        let same = |a: &Option<PathBuf>, b: Option<&PathBuf>| a.is_some() && a.as_ref() == b;
+        let same = |a: &Option<PathBuf>, b: Option<&PathBuf>| {
+            a.as_deref().zip(b).is_some_and(|(a, b)| output::same(a, b))
+        };
         if same(&args.out, args.plot.as_ref()) {
             return Some("--out and --plot name the same file; give each its own".into());
         }

@@ -49,7 +49,7 @@ fn main() -> ExitCode {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
         Err(error) => {
-            eprintln!("piezobeam: {error}");
+            output::complain(error);
             ExitCode::from(2)
         }
     }
@@ -87,10 +87,10 @@ fn solve(args: &SolveArgs) -> Outcome {
     output::write_all(&files, args.force)?;
     if !converged && args.format != Format::Text {
         let reason = picture.report.reason.as_deref().unwrap_or_default();
-        eprintln!("piezobeam: not converged ({}): {reason}", picture.report.status);
+        output::complain(format!("not converged ({}): {reason}", picture.report.status));
     }
     if let Some(missed) = picture.report.missed() {
-        eprintln!("piezobeam: the tolerance {:e} was not reached: {}", missed.tolerance, missed.meaning);
+        output::complain(format!("the tolerance {:e} was not reached: {}", missed.tolerance, missed.meaning));
     }
     Ok(converged && picture.report.missed().is_none())
 }
@@ -100,7 +100,7 @@ fn check(args: &CheckArgs) -> Outcome {
     let (warnings, uniqueness, elements) =
         model::with(&file, None, cli::Precision::F64, tasks::Check).map_err(|e| file.complaint(&e))?;
     let checked = Checked {
-        title: format!("{}\n\n{}", file.name, file.describe()),
+        title: format!("{}\n\n{}", scene_file::printable(&file.name), file.describe()),
         facts: vec![("elements".into(), elements.to_string())],
         warnings,
         uniqueness,
@@ -152,14 +152,14 @@ fn extremes(args: &ExtremesArgs) -> Outcome {
         None => output::print(&text)?,
     }
     if table.wrong > 0 {
-        eprintln!("piezobeam: {} of {} rows are wrong", table.wrong, table.rows);
+        output::complain(format!("{} of {} rows are wrong", table.wrong, table.rows));
     }
     Ok(table.wrong == 0)
 }
 
 fn picture(file: &SceneFile, solved: tasks::Solved) -> Picture {
     Picture {
-        title: file.name.clone(),
+        title: scene_file::printable(&file.name),
         length: file.length,
         gap: solved.gap,
         facts: Vec::new(),

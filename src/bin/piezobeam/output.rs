@@ -10,6 +10,8 @@ use std::path::{Path, PathBuf};
 
 use tempfile::{Builder, NamedTempFile};
 
+use crate::scene_file::printable;
+
 /// An output that could not be written; the message names it and the next step.
 #[derive(Debug)]
 pub enum OutputError {
@@ -23,26 +25,42 @@ impl fmt::Display for OutputError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Exists(path) => {
-                let path = path.display();
-                write!(f, "{path} exists; pass --force to replace it, or choose another name")
+                write!(f, "{} exists; pass --force to replace it, or choose another name", shown(path))
             }
             Self::Directory(path) => {
-                write!(f, "{} is a directory; name a file in it", path.display())
+                write!(f, "{} is a directory; name a file in it", shown(path))
             }
-            Self::Write(path, e) if e.kind() == ErrorKind::NotFound => {
-                let path = path.display();
-                write!(f, "cannot write {path}: its directory does not exist; make it first")
+            Self::Write(path, e) => {
+                write!(f, "cannot write {}: ", shown(path))?;
+                match e.kind() {
+                    ErrorKind::NotFound => write!(f, "its directory does not exist; make it first"),
+                    ErrorKind::NotADirectory => {
+                        write!(f, "a part of its path is a file; name a directory there")
+                    }
+                    ErrorKind::AlreadyExists => write!(f, "a file has this name; choose another"),
+                    ErrorKind::PermissionDenied => {
+                        write!(f, "it is not permitted; choose another directory, or change its permissions")
+                    }
+                    ErrorKind::StorageFull => {
+                        write!(f, "the disk is full; free some space or choose another disk")
+                    }
+                    // Without the name of the temporary file, which says nothing to the user.
+                    _ => match e.get_ref().and_then(|inner| inner.source()) {
+                        Some(cause) => write!(f, "{cause}"),
+                        None => write!(f, "{e}"),
+                    },
+                }
             }
-            Self::Write(path, e) if e.kind() == ErrorKind::StorageFull => {
-                let path = path.display();
-                write!(f, "cannot write {path}: the disk is full; free some space or choose another disk")
-            }
-            Self::Write(path, e) => write!(f, "cannot write {}: {e}", path.display()),
             Self::Stdout(e) => {
                 write!(f, "cannot write to standard output: {e}; write to a file with --out FILE")
             }
         }
     }
+}
+
+/// A path as it is safe to print.
+fn shown(path: &Path) -> String {
+    printable(&path.to_string_lossy())
 }
 
 impl std::error::Error for OutputError {
@@ -86,6 +104,23 @@ pub fn write_all<P: AsRef<Path>>(files: &[(P, String)], force: bool) -> Result<(
     Ok(())
 }
 
+/// Whether two paths name one file, also by way of links and of `./`, and also before it exists.
+pub fn same(a: &Path, b: &Path) -> bool {
+    identity(a) == identity(b)
+}
+
+fn identity(path: &Path) -> PathBuf {
+    let beside = |path: &Path| Some(fs::canonicalize(directory_of(path)).ok()?.join(path.file_name()?));
+    fs::canonicalize(path).ok().or_else(|| beside(path)).unwrap_or_else(|| path.to_owned())
+}
+
+fn directory_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if parent != Path::new("") => parent,
+        _ => Path::new("."),
+    }
+}
+
 /// Makes `directory` and its parents where they are missing.
 pub fn make_directory(directory: &Path) -> Result<(), OutputError> {
     fs::create_dir_all(directory).map_err(|e| OutputError::Write(directory.to_owned(), e))
@@ -94,6 +129,11 @@ pub fn make_directory(directory: &Path) -> Result<(), OutputError> {
 /// Writes to standard output. A reader that has gone away (`| head`) is no error.
 pub fn print(text: &str) -> Result<(), OutputError> {
     stream(&mut io::stdout().lock(), text)
+}
+
+/// Says on standard error what went wrong; where that cannot be written either, the exit status has to do.
+pub fn complain(message: impl fmt::Display) {
+    let _ = writeln!(io::stderr(), "piezobeam: {message}");
 }
 
 fn stream(out: &mut impl Write, text: &str) -> Result<(), OutputError> {
@@ -138,10 +178,6 @@ fn stage(target: Target, text: &str) -> io::Result<Staged<'_>> {
         Target::File(path) => path,
         Target::Device(path) => return Ok(Staged::Device(path, text)),
     };
-    let directory = match path.parent() {
-        Some(parent) if parent != Path::new("") => parent,
-        _ => Path::new("."),
-    };
     let mut builder = Builder::new();
     builder.prefix(".piezobeam-");
     // Temporary files are private by default; a result is as readable as any new file, or as the one it replaces.
@@ -150,7 +186,7 @@ fn stage(target: Target, text: &str) -> io::Result<Staged<'_>> {
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666))
     };
-    let mut file = builder.tempfile_in(directory)?;
+    let mut file = builder.tempfile_in(directory_of(&path))?;
     file.write_all(text.as_bytes())?;
     if let Ok(old) = fs::metadata(&path) {
         file.as_file().set_permissions(old.permissions())?;
@@ -236,6 +272,22 @@ mod tests {
         assert!(message.contains("directory does not exist"), "{message}");
         make_directory(deep.parent().unwrap()).unwrap();
         write(&deep, "x", false).unwrap();
+    }
+
+    #[test]
+    fn one_file_has_many_names() {
+        let dir = tempfile::tempdir().unwrap();
+        let (file, other) = (dir.path().join("a"), dir.path().join("b"));
+        let again = dir.path().join("./a");
+        assert!(same(&file, &again) && !same(&file, &other), "before it exists");
+        fs::write(&file, "").unwrap();
+        assert!(same(&file, &again) && !same(&file, &other));
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink(&file, &other).unwrap();
+            assert!(same(&file, &other));
+        }
+        assert!(same(Path::new("no/where"), Path::new("no/where")));
     }
 
     #[cfg(unix)]

@@ -63,7 +63,7 @@ pub fn run(out: &Path) -> Result<Paper, Box<dyn std::error::Error>> {
          gap, the end potentials and the stiffness of these figures: M = 1, no gap, 1 V at both ends and\n\
          1e8 N/m^2 are assumed.\n{} pictures in {}\n",
         files.len(),
-        out.display()
+        scene_file::printable(&out.to_string_lossy())
     );
     Ok(Paper { table, files, converged })
 }

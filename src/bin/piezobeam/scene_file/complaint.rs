@@ -10,9 +10,16 @@ impl SceneFile {
             Error::Value { field: "load.points", place: Place::Index(i), .. } => {
                 (format!("load.points[{i}].x"), "concentrated loads stand between the clamps".into())
             }
-            Error::Value { field: "stop", .. } => {
-                return FileError::new("--stop", error.to_string());
+            Error::Value { field: "stop", found, .. } => {
+                let message =
+                    format!("expected a number between 0 and 1 in the precision of the solve, found {found}");
+                return FileError::new("--stop", message)
+                    .hint("ask for a larger one, or for --precision f64");
             }
+            Error::Value { field, found, .. } if !found.is_finite() => (
+                field.into(),
+                "it has to be finite on the whole beam; --precision f32 holds numbers up to 3.4e38".into(),
+            ),
             Error::Value { field, .. } => (field.into(), unit(field)),
             Error::Jump { field, .. } => (field.into(), "give pieces whose values meet at the break".into()),
             Error::Missing { field, needed_by } => (field.into(), format!("add it, or take {needed_by} out")),
@@ -31,7 +38,9 @@ fn unit(field: &str) -> String {
         "beam.permittivity" => "N m^2/V^2",
         "foundation.stiffness" => "N/m^2",
         "conduction.mu1" | "conduction.mu2" => "N/(V m^2)",
-        "foundation.gap" | "length" | "mesh.nodes" => "m",
+        "load.transverse" | "load.axial" => "N/m",
+        "potential.left" | "potential.right" | "conduction.potential_truncation" => "V",
+        "foundation.gap" | "length" | "mesh.nodes" | "conduction.truncation" => "m",
         _ => return String::new(),
     };
     format!("it is in {unit}")

@@ -86,7 +86,7 @@ impl Error for FileError {}
 
 /// The text with control characters, line separators and characters that turn
 /// the direction of writing replaced by their escapes.
-pub(super) fn printable(text: &str) -> String {
+pub fn printable(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
         if hidden(c) {

@@ -16,13 +16,13 @@ mod number;
 mod profile;
 mod profile_form;
 mod sections;
-mod source;
+pub mod source;
 mod suggestion;
 mod table;
 
 use toml::de::DeTable;
 
-pub use error::FileError;
+pub use error::{FileError, printable};
 
 pub use profile::ProfileSpec;
 pub use sections::{BeamTable, ConductionTable, FoundationTable, LoadTable, MeshTable, PotentialTable};

@@ -13,6 +13,8 @@ pub(super) enum Problem {
     NotFinite(String),
     /// It is beyond the range of doubles, as written.
     TooLarge(String),
+    /// It is not zero, but nearer to zero than any double, as written.
+    TooSmall(String),
 }
 
 /// The value as a finite number, be it written as an integer or as a float.
@@ -29,10 +31,17 @@ pub(super) fn finite(value: &DeValue<'_>) -> Result<f64, Problem> {
         _ => return Err(Problem::NotANumber),
     };
     match parsed {
+        Some(0.0) if vanishes(text) => Err(Problem::TooSmall(cut(text))),
         Some(number) if f64::is_finite(number) => Ok(number),
         Some(_) if text.contains("inf") || text.contains("nan") => Err(Problem::NotFinite(text.to_owned())),
         _ => Err(Problem::TooLarge(cut(text))),
     }
+}
+
+/// Whether a number that reads as zero is written as another one, such as `1e-400`.
+pub(super) fn vanishes(text: &str) -> bool {
+    let digits = text.split(['e', 'E']).next().unwrap_or_default();
+    digits.contains(|c: char| ('1'..='9').contains(&c))
 }
 
 #[cfg(test)]
@@ -55,7 +64,9 @@ mod tests {
             ("0x1F", 31.0),
             ("0b101", 5.0),
             ("123456789012345678901234567890", 1.234_567_890_123_456_8e29),
-            ("1e-999", 0.0),
+            ("0e-999", 0.0),
+            ("-0.0", 0.0),
+            ("5e-324", 5e-324),
         ] {
             assert_eq!(of(text), Ok(number), "{text}");
         }
@@ -71,6 +82,9 @@ mod tests {
         }
         for text in ["1e999", "-1e999"] {
             assert_eq!(of(text), Err(Problem::TooLarge(text.into())), "{text}");
+        }
+        for text in ["1e-999", "-0.001E-400", "1e-324"] {
+            assert_eq!(of(text), Err(Problem::TooSmall(text.into())), "{text}");
         }
         let digits = "9".repeat(400);
         let cut = format!("{}…", &digits[..60]);

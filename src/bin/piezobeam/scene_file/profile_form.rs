@@ -44,11 +44,16 @@ pub(super) fn read_smooth(field: &Field<'_>, length: f64) -> Result<ProfileSpec,
 }
 
 fn formula(field: &Field<'_>, text: &str, length: f64) -> Result<Expression, FileError> {
-    Expression::parse(text, length).map_err(|error| {
+    let formula = Expression::parse(text, length).map_err(|error| {
         let place = error.at.map_or(String::new(), |at| format!(" at character {at}"));
         let message = format!("in {}: {}{place}", quoted(text), error.message);
         field.error(message).hint(error.hint)
-    })
+    })?;
+    let Some(x) = formula.pole(length) else { return Ok(formula) };
+    // As many digits as the search is good for.
+    let x = format!("{x:.5e}").parse().unwrap_or(x);
+    let message = format!("in {}: grows without bound at x = {x}", quoted(text));
+    Err(field.error(message).hint("give a formula that is finite on the whole beam"))
 }
 
 /// Reads the forms which are tables.

@@ -144,29 +144,36 @@ pub(super) fn load(table: &Table<'_>, length: f64) -> Result<LoadTable, FileErro
         transverse: profile(table, "transverse", length)?,
         axial: profile(table, "axial", length)?,
         points: match table.field("points") {
-            Some(field) => points(&field)?,
+            Some(field) => points(&field, length)?,
             None => Vec::new(),
         },
     })
 }
 
-fn points(field: &Field<'_>) -> Result<Vec<PointSpec>, FileError> {
+fn points(field: &Field<'_>, length: f64) -> Result<Vec<PointSpec>, FileError> {
     let DeValue::Array(array) = field.value() else {
         return Err(field
             .expected("tables [[load.points]]")
             .hint("write [[load.points]] in double brackets before each point"));
     };
-    field.elements(array).map(|point| self::point(&point)).collect()
+    field.elements(array).map(|point| self::point(&point, length)).collect()
 }
 
-fn point(field: &Field<'_>) -> Result<PointSpec, FileError> {
+fn point(field: &Field<'_>, length: f64) -> Result<PointSpec, FileError> {
     let DeValue::Table(_) = field.value() else {
         return Err(field.expected("a table").hint("write a point as { x = 0.3, force = 1e3 }"));
     };
     let table = field.table()?;
     table.allow(POINT_KEYS)?;
+    let place = table.required("x", "add x = <position>, in m")?;
+    let x = place.number()?;
+    if x <= 0.0 || x >= length {
+        return Err(place
+            .error(format!("{x} is not inside the beam"))
+            .hint(format!("concentrated loads stand strictly between 0 and {length}")));
+    }
     Ok(PointSpec {
-        x: required_number(&table, "x", "add x = <position>, in m")?,
+        x,
         force: table.number("force")?.unwrap_or(0.0),
         moment: table.number("moment")?.unwrap_or(0.0),
     })

@@ -18,9 +18,16 @@ const LARGEST: u64 = 1 << 20;
 /// the text is not a scene.
 pub fn read(path: &Path) -> Result<SceneFile, FileError> {
     let name = path.to_string_lossy();
-    let bytes = bytes(path, &name)?;
-    let text = text(&bytes, &name)?;
-    super::parse(text, &name)
+    from_bytes(&bytes(path, &name)?, &name)
+}
+
+/// Reads the scene in the `bytes` of a file which messages call `name`.
+///
+/// # Errors
+///
+/// When they are not UTF-8 text, or when the text is not a scene.
+pub fn from_bytes(bytes: &[u8], name: &str) -> Result<SceneFile, FileError> {
+    super::parse(text(bytes, name)?, name)
 }
 
 /// The content of a regular file of bounded size.

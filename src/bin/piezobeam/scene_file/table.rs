@@ -119,6 +119,9 @@ impl<'a> Field<'a> {
             number::Problem::TooLarge(text) => self
                 .error(format!("{text} is beyond the range of double precision"))
                 .hint("use numbers up to about 1.8e308"),
+            number::Problem::TooSmall(text) => self
+                .error(format!("{text} is too small for double precision"))
+                .hint("write 0, or numbers from about 5e-324 on"),
         })
     }
 

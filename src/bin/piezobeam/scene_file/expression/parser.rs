@@ -10,7 +10,7 @@ use winnow::stream::{Stateful, Stream};
 use winnow::token::{any, one_of, take_while};
 
 use super::super::error::{listed, quoted};
-use super::super::suggestion;
+use super::super::{number, suggestion};
 use super::ExpressionError;
 use super::program::{Binary, FUNCTIONS, Function, Program, Step, TOO_DEEP};
 
@@ -92,7 +92,7 @@ fn sum(i: &mut Input<'_>) -> Result<usize, Stop> {
 }
 
 fn operand(i: &mut Input<'_>) -> Result<usize, Stop> {
-    alt((number, named, bracket)).parse_next(i)
+    alt((literal, named, bracket)).parse_next(i)
 }
 
 /// A sign binds less tightly than a power and more tightly than a product.
@@ -138,7 +138,7 @@ fn operator<'a>(i: &mut Input<'a>) -> Result<Infix<Input<'a>, usize, Stop>, Stop
     }
 }
 
-fn number(i: &mut Input<'_>) -> Result<usize, Stop> {
+fn literal(i: &mut Input<'_>) -> Result<usize, Stop> {
     let at = offset(i);
     let word = digits.parse_next(i)?;
     let value: f64 = word.parse().map_err(|_| {
@@ -147,6 +147,10 @@ fn number(i: &mut Input<'_>) -> Result<usize, Stop> {
     if !value.is_finite() {
         let message = format!("{} is beyond the range of double precision", quoted(word));
         return Err(stop_at(i, at, message, "use numbers up to about 1.8e308"));
+    }
+    if value == 0.0 && number::vanishes(word) {
+        let message = format!("{} is too small for double precision", quoted(word));
+        return Err(stop_at(i, at, message, "write 0, or numbers from about 5e-324 on"));
     }
     spaces(i)?;
     add(i, at, offset(i), Step::Constant(value))

@@ -281,3 +281,38 @@ fn constants_are_computed_once_and_stacks_are_bounded() {
     assert!((1..128).all(|_| program.add(Step::Binary(Binary::Plus)).is_ok()));
     assert_eq!(program.run(1.0_f64).to_bits(), 128.0_f64.to_bits());
 }
+
+#[test]
+fn poles_on_the_beam_are_found() {
+    let pole = |text: &str| Expression::parse(text, 2.0).expect("a formula").pole(2.0);
+    for (text, x) in [
+        ("1/(x - 0.5)", 0.5),
+        ("1/(x - 0.3)", 0.3),
+        ("1e-9/(x - 1.234567)^2 + 5", 1.234567),
+        ("1/x", 0.0),
+        ("1/(x - L)", 2.0),
+        ("ln(x - 0.5)", 0.5),
+        ("tan(x)", std::f64::consts::FRAC_PI_2),
+        ("(x - 0.7)^-1 + 1e6", 0.7),
+        ("1/sin(x - 1)", 1.0),
+    ] {
+        let found = pole(text).expect(text);
+        assert!((found - x).abs() < 1e-6, "{text}: {found}");
+    }
+    for text in [
+        "3",
+        "0",
+        "sin(x)/x",
+        "sin(x - 0.3)/(x - 0.3)",
+        "1/(1 + x)",
+        "1/((x - 0.5)^2 + 1e-6)",
+        "exp(50*x)",
+        "sin(5000*x)",
+        "1/(x + 1e-3)",
+        "sqrt(x - 0.5)",
+        "max(x, 1)",
+    ] {
+        assert_eq!(pole(text), None, "{text}");
+    }
+    assert!(pole("1e300*exp(20*x)").is_some(), "beyond the range of doubles");
+}

@@ -53,7 +53,7 @@ fn missing_keys_are_named() {
     );
     assert_eq!(complaint("[potential]\nleft = 1"), "4: potential.right: missing; add right = <number>, in V");
     assert_eq!(
-        complaint("[[load.points]]\nx = 1\n[[load.points]]\nforce = 1"),
+        complaint("[[load.points]]\nx = 0.5\n[[load.points]]\nforce = 1"),
         "6: load.points[1].x: missing; add x = <position>, in m"
     );
 }
