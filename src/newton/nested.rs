@@ -13,7 +13,7 @@ use crate::law::Compliance;
 use crate::profile::{Piece, Profile, Smooth};
 use crate::real::{Pair, Real};
 use crate::scene::Model;
-use crate::storage::{Node, Place, State};
+use crate::storage::{Node, Place, State, States};
 use crate::sweep::{Condensed, End};
 use crate::{Error, electric};
 use arrayvec::ArrayVec;
@@ -52,16 +52,17 @@ pub(crate) fn coarsen<T: Real, M: Model<T>>(
     places: &mut [Place<T, M>],
     elements: usize,
 ) -> Levels {
-    let pressed = pressed(model, &places[..elements]);
+    let pressed = pressed(model, places.get(..elements).unwrap_or_default());
     let mut levels = Levels::new();
-    levels.push((0, elements));
+    let _ = levels.try_push((0, elements));
     while let Some(&(start, len)) = levels.last() {
         // Without contact the first solve is the last.
         let linear = !M::Law::PRESENT && !M::Mu1::PRESENT;
         if linear || len <= COARSEST || levels.is_full() {
             break;
         }
-        let (fine, rest) = places[start..].split_at_mut(len);
+        let behind = places.get_mut(start..).unwrap_or_default();
+        let Some((fine, rest)) = behind.split_at_mut_checked(len) else { break };
         let mut made = 0;
         let mut from = 0;
         while from < len {
@@ -69,7 +70,7 @@ pub(crate) fn coarsen<T: Real, M: Model<T>>(
             let mut to = from + 1;
             while to < len
                 && to - from < MERGED
-                && !fine[to - 1].element.stop
+                && fine.get(to - 1).is_some_and(|place| !place.element.stop)
                 && !(pressed[0] && to - from >= from.max(1))
                 && !(pressed[1] && to - from >= (len - 1 - to).max(1))
             {
@@ -77,7 +78,9 @@ pub(crate) fn coarsen<T: Real, M: Model<T>>(
             }
             let Some(place) = rest.get_mut(made) else { break };
             let mut parts: ArrayVec<Element<T, M>, MERGED> = ArrayVec::new();
-            parts.extend(fine[from..to].iter().map(|p| p.element));
+            for place in fine.iter().take(to).skip(from) {
+                let _ = parts.try_push(place.element);
+            }
             place.element = Element::merge(&parts);
             made += 1;
             from = to;
@@ -86,7 +89,7 @@ pub(crate) fn coarsen<T: Real, M: Model<T>>(
         if from < len || made * 4 > len * 3 {
             break;
         }
-        levels.push((start + len, made));
+        let _ = levels.try_push((start + len, made));
     }
     levels
 }
@@ -255,8 +258,8 @@ pub(crate) fn solve<T: Real, M: Model<T>>(
     };
     // A beam that is pressed in at a clamp has no rigid limit: the moment there grows with the stiffness.
     let rigid = M::Law::PRESENT
-        && pressed(model, &places[..elements]) == [false; 2]
-        && places[..elements].iter().any(too_stiff);
+        && pressed(model, places.get(..elements).unwrap_or_default()) == [false; 2]
+        && places.iter().take(elements).any(too_stiff);
     let mut count = budget(settings, elements);
     let (most, share) = (count.most_visits, 40 * elements + 5000);
     if rigid {
@@ -269,7 +272,7 @@ pub(crate) fn solve<T: Real, M: Model<T>>(
     }
     count.most_visits = most;
     for &(start, len) in levels {
-        for place in &mut places[start..start + len] {
+        for place in places.iter_mut().skip(start).take(len) {
             place.element.soften(law);
         }
     }
@@ -280,7 +283,7 @@ pub(crate) fn solve<T: Real, M: Model<T>>(
 /// Takes back what a solve did to the laws in `places` that found the foundation rigid.
 pub(crate) fn harden<T: Real, M: Model<T>>(model: &M, places: &mut [Place<T, M>], levels: &Levels) {
     let Some(&(_, elements)) = levels.first() else { return };
-    for place in &mut places[..elements] {
+    for place in places.iter_mut().take(elements) {
         place.element.harden(model.foundation().law);
     }
     coarsen(model, places, elements);
@@ -295,20 +298,19 @@ fn descend<T: Real, M: Model<T>>(
     count: &mut Count,
 ) -> Result<Answer<T, M>, Error> {
     let elements = levels.first().map_or(0, |&(_, len)| len);
-    let context = context(model, &places[..elements], settings.stop);
+    let context = context(model, places.get(..elements).unwrap_or_default(), settings.stop);
     let mut outcome = Ok(Outcome::Stalled);
     let mut state = 0;
     for (rank, &(start, len)) in levels.iter().enumerate().rev() {
         let coarsest = rank + 1 == levels.len();
-        let (head, tail) = places.split_at_mut(start + len);
-        let mesh = &mut head[start..];
+        let Some((head, tail)) = places.split_at_mut_checked(start + len) else { break };
+        let mesh = head.get_mut(start..).unwrap_or_default();
         if coarsest {
             for place in mesh.iter_mut() {
-                place.work.states = [State::default(); 2];
+                place.work.states = States::default();
             }
-        } else {
-            let (_, coarse_len) = levels[rank + 1];
-            prolong(mesh, &tail[..coarse_len], state);
+        } else if let Some(&(_, coarse_len)) = levels.get(rank + 1) {
+            prolong(mesh, tail.get(..coarse_len).unwrap_or_default(), state);
         }
         let mut level = Level::new(&context, mesh);
         if context.onto.is_some() && !context.into {
@@ -329,7 +331,7 @@ fn descend<T: Real, M: Model<T>>(
                 } else if rank == 0 {
                     // The coarser meshes misled: start anew on this one.
                     for place in level.places.iter_mut() {
-                        place.work.states = [State::default(); 2];
+                        place.work.states = States::default();
                     }
                     level.begin(stop, true, count)
                 } else {
