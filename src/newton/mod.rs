@@ -228,7 +228,8 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
 
     /// Is bending in a loop with the potential?
     fn two_way(&self) -> bool {
-        self.context.onto.is_some() && self.context.into && M::Permittivity::PRESENT
+        let possible = M::Mu1::PRESENT && M::Mu2::PRESENT && M::Permittivity::PRESENT;
+        possible && self.context.onto.is_some() && self.context.into
     }
 
     /// u, q and the fluxes from the current penetration, to all digits.
@@ -971,8 +972,8 @@ fn potential<T: Real, M: Model<T>>(
     ratio: &Option<Ratio<T>>,
 ) -> Cubic<T> {
     match ratio {
-        Some(ratio) => electric::potential(element, left, &work.node, ratio),
-        None => Cubic::default(),
+        Some(ratio) if M::Mu1::PRESENT => electric::potential(element, left, &work.node, ratio),
+        _ => Cubic::default(),
     }
 }
 

@@ -313,7 +313,7 @@ fn descend<T: Real, M: Model<T>>(
             prolong(mesh, tail.get(..coarse_len).unwrap_or_default(), state);
         }
         let mut level = Level::new(&context, mesh);
-        if context.onto.is_some() && !context.into {
+        if M::Mu1::PRESENT && context.onto.is_some() && !context.into {
             level.electric();
         }
         // A halt on a coarser mesh is one on all: what it found is only carried on.
@@ -418,7 +418,8 @@ pub(crate) fn follow<T: Real, M: Model<T>>(
 impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
     /// From nothing.
     fn begin(&mut self, stop: T, finest: bool, count: &mut Count) -> Result<Outcome, Halt> {
-        if self.context.onto.is_none() {
+        // What the type rules out is not compiled: the coupled method is half of the code.
+        if !M::Mu1::PRESENT || self.context.onto.is_none() {
             return self.cold(stop, finest, count);
         }
         // Without the potential's action the state is the least of a convex energy: the start for the rest.
@@ -460,7 +461,7 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
         let stiffness = self.stiffness();
         let widest = self.places.iter().fold(T::zero(), |m, p| m.max(p.element.h)) * T::of(MERGED as f64);
         let scale = T::of(4.0) * self.bending() / stiffness / widest.powi(4);
-        if scale >= T::one() && self.context.onto.is_some() {
+        if M::Mu1::PRESENT && scale >= T::one() && self.context.onto.is_some() {
             // Not the contact's layers: the potential's action is what does not settle.
             return self.descend_coupled(T::one(), stop, if finest { 4 * STAGE } else { STAGE }, count);
         }

