@@ -85,7 +85,7 @@ cp "$out/said" "$out/want"
 tail -n 1 "$out/want"
 board 3 thumbv7em-none-eabihf 0 0x20000000 qemu-system-arm -M mps2-an386 -cpu cortex-m4
 board s riscv32imac-unknown-none-elf 0x80000000 0x80000000 qemu-system-riscv32 -M virt -bios none
-build z wasm32-unknown-unknown page "-Clinker=wasm-ld -Clinker-flavor=wasm-lld" --no-entry --export=run
+build z wasm32-unknown-unknown page "-Clinker=wasm-ld" --no-entry --export=run
 node page.mjs "$image.wasm" >"$out/said"
 same 'wasm32-unknown-unknown, level z'
 if [ "$which" = all ]; then
