@@ -24,11 +24,15 @@ need qemu-system-riscv32 qemu-system-misc
 need node nodejs
 need ld.lld lld
 has_target() { [ -d "$(rustc --print sysroot)/lib/rustlib/$1/lib" ]; }
-if ! has_target thumbv7em-none-eabihf; then
+triples=(thumbv7em-none-eabihf riscv32imac-unknown-none-elf wasm32-unknown-unknown)
+[ "$which" != all ] || triples+=(thumbv6m-none-eabi aarch64-unknown-none)
+for triple in "${triples[@]}"; do
+    has_target "$triple" && continue
     need /usr/bin/rustc rustc-web
     need /usr/bin/cargo cargo-web
     need /usr/lib/rustlib/src/rust/library/core rust-web-src
-fi
+    break
+done
 if [ ${#missing[@]} -gt 0 ]; then
     apt-get update -qq
     DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
