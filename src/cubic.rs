@@ -122,8 +122,8 @@ impl<T: Real> Cubic<T> {
                 && to_value.is_finite()
             {
                 let root = shifted.root_between(from, to, from_value < T::zero());
-                if root > T::zero() && root < T::one() && !roots.is_full() {
-                    roots.push(root);
+                if root > T::zero() && root < T::one() {
+                    let _ = roots.try_push(root);
                 }
             }
             (from, from_value) = (to, to_value);
@@ -149,7 +149,7 @@ impl<T: Real> Cubic<T> {
         let (first, second) = (q / a, c / q);
         let mut keep = |t: T| {
             if t > T::zero() && t < T::one() {
-                points.push(t);
+                let _ = points.try_push(t);
             }
         };
         if first <= second {

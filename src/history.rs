@@ -78,15 +78,16 @@ impl<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized> History<'s, T, M, S> {
         self.mesh.validate(scene.length())?;
         let elements = self.mesh.count(scene)?;
         let places = self.memory.places(elements);
-        if elements > places.len() {
-            return Err(Error::Capacity { needed: elements, available: places.len() });
-        }
+        let available = places.len();
+        let Some(mesh) = places.get_mut(..elements) else {
+            return Err(Error::Capacity { needed: elements, available });
+        };
         let last = last.filter(|(before, _)| *before == elements).map(|(_, last)| last);
-        let changed = lay(&self.mesh, scene, &mut places[..elements], last.is_some())?;
+        let changed = lay(&self.mesh, scene, mesh, last.is_some())?;
         let mut wasted = 0;
         let mut answer = None;
         if let (Some(last), Some(changed)) = (last, changed) {
-            match nested::follow(scene, &mut places[..elements], &last, changed, settings) {
+            match nested::follow(scene, mesh, &last, changed, settings) {
                 Some(followed) if followed.report.status == Status::Converged => answer = Some(followed),
                 Some(followed) => wasted = followed.report.element_visits,
                 None => {}
@@ -95,7 +96,7 @@ impl<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized> History<'s, T, M, S> {
         let answer = match answer {
             Some(answer) => answer,
             None => {
-                for place in places[..elements].iter_mut() {
+                for place in mesh {
                     *place = Place { element: place.element, ..Place::default() };
                 }
                 let levels = nested::coarsen(scene, places, elements);
@@ -106,7 +107,7 @@ impl<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized> History<'s, T, M, S> {
                 answer
             }
         };
-        let places = &places[..elements];
+        let places = places.get(..elements).unwrap_or_default();
         if answer.report.status == Status::Converged {
             self.last = Some((elements, Last::of(&answer, scene, places)));
         }

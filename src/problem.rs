@@ -153,13 +153,14 @@ impl<'s, T: Real, M: Model<T>> Prepared<'s, T, M> {
     /// Settings out of range.
     pub fn solution(&mut self, settings: &Settings<T>) -> Result<Solution<'_, T, M>, Error> {
         let answer = self.run(settings)?;
-        Ok(Solution::new(self.scene, &self.places[..self.elements()], answer))
+        let places = self.places.get(..self.elements()).unwrap_or_default();
+        Ok(Solution::new(self.scene, places, answer))
     }
 
     fn into_solution(mut self, settings: &Settings<T>) -> Result<Solution<'s, T, M>, Error> {
         let answer = self.run(settings)?;
         let elements = self.elements();
-        Ok(Solution::new(self.scene, &self.places[..elements], answer))
+        Ok(Solution::new(self.scene, self.places.get(..elements).unwrap_or_default(), answer))
     }
 
     pub(crate) fn run(&mut self, settings: &Settings<T>) -> Result<Answer<T, M>, Error> {

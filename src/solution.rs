@@ -9,7 +9,7 @@ use crate::certificate::{self, Uniqueness, Warning};
 use crate::cubic::{Cubic, Side};
 use crate::electric::{self, Ratio};
 use crate::element::Element;
-use crate::element::contact::{Contact, Fault, law_splits, parts};
+use crate::element::contact::{Contact, Fault, law_splits, parts, put};
 use crate::element::hermite::Motion;
 use crate::element::linear::{Inverse, invert};
 use crate::law::{Compliance, truncate, truncate_positive};
@@ -286,11 +286,11 @@ impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
         };
         let bounds = self.scene.conduction();
         let mut splits = ArrayVec::new();
-        splits.extend(law_splits::<T, M>(&eta));
+        put(&mut splits, law_splits::<T, M>(&eta));
         if M::Mu1::PRESENT || M::Mu2::PRESENT {
-            splits.extend(eta.crossings(bounds.truncation));
-            splits.extend(q.crossings(bounds.potential_truncation));
-            splits.extend(q.crossings(-bounds.potential_truncation));
+            put(&mut splits, eta.crossings(bounds.truncation));
+            put(&mut splits, q.crossings(bounds.potential_truncation));
+            put(&mut splits, q.crossings(-bounds.potential_truncation));
         }
         let mid = element.x(T::of(0.5));
         let right = &work.node;

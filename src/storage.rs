@@ -14,6 +14,7 @@ use crate::sweep::quad::Coupled;
 use crate::sweep::{Condensed, Factor};
 
 use crate::element::contact::Touch;
+use core::ops::{Index, IndexMut};
 
 /// Fields at a node: u, q and the fluxes. What the scene lacks takes no room.
 pub(crate) struct Node<T: Real, M: Model<T>> {
@@ -65,6 +66,33 @@ impl<T: Real> State<T> {
     }
 }
 
+/// The current iterate and the best one so far. The last bit of an index tells them apart, so that none is out of
+/// bounds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct States<T: Real>([State<T>; 2]);
+
+impl<T: Real> States<T> {
+    /// The same state twice.
+    pub(crate) fn both(state: State<T>) -> Self {
+        Self([state; 2])
+    }
+}
+
+impl<T: Real> Index<usize> for States<T> {
+    type Output = State<T>;
+    #[inline(always)]
+    fn index(&self, which: usize) -> &State<T> {
+        &self.0[which & 1]
+    }
+}
+
+impl<T: Real> IndexMut<usize> for States<T> {
+    #[inline(always)]
+    fn index_mut(&mut self, which: usize) -> &mut State<T> {
+        &mut self.0[which & 1]
+    }
+}
+
 /// What the monolithic sweep keeps of an element (see [`crate::newton`]).
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Link<T: Real> {
@@ -85,8 +113,8 @@ pub(crate) struct Work<T: Real, M: Model<T>> {
     /// All to the left of the right node.
     pub(crate) condensed: Condensed<T, Bending>,
     pub(crate) factor: Factor<T, Bending>,
-    /// The current iterate and the best one so far; which is which, the iteration knows.
-    pub(crate) states: [State<T>; 2],
+    /// Which is which, the iteration knows.
+    pub(crate) states: States<T>,
     pub(crate) touch: Touch,
     pub(crate) node: Node<T, M>,
     linked: Linked<T, M>,
@@ -130,7 +158,7 @@ impl<T: Real, M: Model<T>> Default for Work<T, M> {
         Self {
             condensed: Condensed::default(),
             factor: Factor::default(),
-            states: [State::default(); 2],
+            states: States::default(),
             touch: Touch::Free,
             node: Node::default(),
             linked: Linked::<T, M>::default(),
@@ -258,4 +286,14 @@ impl<T: Real, M: Model<T>> Storage<T, M> for HeapWorkspace<T, M> {
         }
         &mut self.places
     }
+}
+
+/// The first `elements` places of `memory`, as many as it has.
+pub(crate) fn first<T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
+    memory: &mut S,
+    elements: usize,
+) -> &mut [Place<T, M>] {
+    let places = memory.places(elements);
+    let held = elements.min(places.len());
+    places.get_mut(..held).unwrap_or_default()
 }

@@ -16,7 +16,7 @@ use crate::problem::{self, Problem};
 use crate::real::{Pair, Real};
 use crate::scene::{self, Model};
 use crate::solution::Solution;
-use crate::storage::{Place, Storage};
+use crate::storage::{self, Place, States, Storage};
 use core::fmt;
 use core::marker::PhantomData;
 
@@ -175,7 +175,7 @@ impl<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized> Adaptive<'s, T, M, S> 
         settings.validate()?;
         let mut start = None;
         if let Some((elements, state)) = last {
-            let places = &mut self.memory.places(elements)[..elements];
+            let places = storage::first(self.memory, elements);
             if carry_over(scene, places, state)? {
                 let answer = nested::sharpen(scene, places, f64::INFINITY, settings);
                 let visits = answer.report.element_visits;
@@ -216,7 +216,7 @@ fn carry_over<T: Real, M: Model<T>>(
         let last = place.work.states[state];
         *place = Place::default();
         place.element = Element::sample(scene, left, right, stop <= right + tiny)?;
-        place.work.states = [last; 2];
+        place.work.states = States::both(last);
         left = right;
     }
     Ok(true)
@@ -269,7 +269,7 @@ fn run<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
     let mut last: Option<Pass<T>> = None;
     let mut calibration = T::one();
     let (estimate, mut reached) = loop {
-        let places = &mut memory.places(elements)[..elements];
+        let places = storage::first(memory, elements);
         let pass = Pass::of(scene, places, &answer);
         visits += elements;
         if let Some(last) = last {
@@ -288,7 +288,7 @@ fn run<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
         }
         let room = memory.places(wanted.elements.max(elements)).len();
         let shares =
-            Shares { places: &memory.places(elements)[..elements], shares: 1 - answer.state, join: true };
+            Shares { places: storage::first(memory, elements), shares: 1 - answer.state, join: true };
         let plan = if wanted.elements > room { shares.plan(allowed, room) } else { wanted };
         if passes == PASSES || (wanted.elements > room && plan.elements <= elements) {
             break (estimate, Reached::Capacity);
@@ -296,14 +296,14 @@ fn run<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
         divide::remesh(scene, memory, elements, answer.state, plan)?;
         elements = plan.elements;
         let (settings, units) = solved_to(target, visits);
-        answer = nested::sharpen(scene, &mut memory.places(elements)[..elements], units, &settings);
+        answer = nested::sharpen(scene, storage::first(memory, elements), units, &settings);
         visits += answer.report.element_visits;
         (passes, finished, last) = (passes + 1, target <= tolerance, Some(pass));
     };
-    let places = &mut memory.places(elements)[..elements];
+    let places = storage::first(memory, elements);
     if !finished {
         for place in places.iter_mut() {
-            place.work.states = [place.work.states[answer.state]; 2];
+            place.work.states = States::both(place.work.states[answer.state]);
         }
         let (settings, units) = solved_to(tolerance, visits);
         answer = nested::sharpen(scene, places, units, &settings);

@@ -7,7 +7,7 @@ use crate::element::hermite::Motion;
 use crate::error::Error;
 use crate::real::{Pair, Real};
 use crate::scene::Model;
-use crate::storage::{Place, State, Storage};
+use crate::storage::{Place, State, States, Storage};
 use crate::sweep::Block;
 use crate::sweep::pair::Bending;
 
@@ -33,7 +33,7 @@ pub(super) fn part<T: Real, M: Model<T>>(
     part.element = Element::sample(model, node(j), node(j + 1), last && element.stop)?;
     let State { e, d } = whole.work.states[state];
     let motion = Motion::new(element.h, e, d).part(T::one() - share(j + 1), share(1));
-    part.work.states = [State { e: motion.e, d: motion.d }; 2];
+    part.work.states = States::both(State { e: motion.e, d: motion.d });
     Ok(part)
 }
 
@@ -49,7 +49,7 @@ fn joined<T: Real, M: Model<T>>(
     let (near, far) = (east.work.states[state], west.work.states[state]);
     // e = d_left - T d_right along both.
     let e = far.e + Bending::carry(west.element.h, near.e);
-    whole.work.states = [State { e, d: near.d }; 2];
+    whole.work.states = States::both(State { e, d: near.d });
     Ok(whole)
 }
 
@@ -169,7 +169,7 @@ pub(super) fn remesh<T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
         }
     }
     for place in &mut places[..needed] {
-        place.work.states = [place.work.states[state]; 2];
+        place.work.states = States::both(place.work.states[state]);
     }
     Ok(())
 }

@@ -14,7 +14,7 @@ use crate::profile::Profile;
 use crate::real::Real;
 use crate::scene::Model;
 use crate::solution::Solution;
-use crate::storage::Storage;
+use crate::storage::{self, Storage};
 use bound::Bounds;
 use distance::Distance;
 use divide::Shares;
@@ -115,7 +115,7 @@ impl<T: Real, M: Model<T>> Solution<'_, T, M> {
         }
         let (mut elements, mut visits, mut pass) = (needed, 0, 1);
         loop {
-            let places = &mut memory.places(elements)[..elements];
+            let places = storage::first(memory, elements);
             let mut answer = nested::sharpen(scene, places, 1.0, settings);
             visits += answer.report.element_visits;
             answer.report.element_visits = visits;

@@ -169,11 +169,11 @@ impl<T: Real> Contact<T> {
         let bounds = model.conduction();
         let (most, most_q) = (bounds.truncation, bounds.potential_truncation);
         let mut splits = Splits::new();
-        splits.extend(law_splits::<T, M>(eta));
+        put(&mut splits, law_splits::<T, M>(eta));
         if conducts {
-            splits.extend(eta.crossings(most));
-            splits.extend(q.crossings(most_q));
-            splits.extend(q.crossings(-most_q));
+            put(&mut splits, eta.crossings(most));
+            put(&mut splits, q.crossings(most_q));
+            put(&mut splits, q.crossings(-most_q));
         }
         let mut contact = Self { touch: Touch::Mixed, ..Self::FREE() };
         for (from, to) in parts(&mut splits) {
@@ -299,21 +299,32 @@ impl<T: Real> Contact<T> {
 #[inline(always)]
 pub(crate) fn law_splits<T: Real, M: Model<T>>(eta: &Cubic<T>) -> ArrayVec<T, 5> {
     let mut splits = ArrayVec::new();
-    splits.extend(eta.crossings(T::zero()));
+    put(&mut splits, eta.crossings(T::zero()));
     if !M::Law::LINEAR {
-        splits.extend(eta.turning_points());
+        put(&mut splits, eta.turning_points());
     }
     splits
+}
+
+/// Adds `more` to `splits`, which have room for all that there can be; `extend` would panic where they had not.
+#[inline(always)]
+pub(crate) fn put<T, const N: usize, const K: usize>(splits: &mut ArrayVec<T, N>, more: ArrayVec<T, K>) {
+    for split in more {
+        let _ = splits.try_push(split);
+    }
 }
 
 /// The intervals between the ends of [0, 1] and the splits, which are sorted on the way.
 pub(crate) fn parts<T: Real, const N: usize>(splits: &mut ArrayVec<T, N>) -> impl Iterator<Item = (T, T)> {
     // Insertion sort: a handful of numbers, no allocation.
     for i in 1..splits.len() {
-        let mut j = i;
-        while j > 0 && splits[j - 1] > splits[j] {
-            splits.swap(j - 1, j);
-            j -= 1;
+        let mut sorted = splits.get_mut(..=i).unwrap_or_default();
+        while let Some((last, before)) = sorted.split_last_mut() {
+            match before.last_mut() {
+                Some(one) if *one > *last => core::mem::swap(one, last),
+                _ => break,
+            }
+            sorted = before;
         }
     }
     let mut from = T::zero();
@@ -337,7 +348,7 @@ impl<T: Real, M: Model<T>> Element<T, M> {
         let mut list = ArrayVec::new();
         for (from, to) in parts(&mut splits) {
             if eta.at(T::of(0.5) * (from + to)) > T::zero() && !list.is_full() {
-                list.push((from, to));
+                let _ = list.try_push((from, to));
             }
         }
         list

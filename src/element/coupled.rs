@@ -16,7 +16,7 @@
 //! Rows of the block: force and moment; -sigma and -D, the forces that conjugate to u and q. The block is not
 //! symmetric: current makes potential by mu2, potential makes force by mu1.
 
-use super::contact::{Contact, Splits, parts};
+use super::contact::{Contact, Splits, parts, put};
 use super::hermite::work;
 use super::{Element, POINTS};
 use crate::cubic::Cubic;
@@ -75,10 +75,10 @@ impl<T: Real> Coupling<T> {
         let bounds = model.conduction();
         let (most, most_q) = (bounds.truncation, bounds.potential_truncation);
         let mut splits = Splits::new();
-        splits.extend(eta.crossings(zero));
-        splits.extend(eta.crossings(most));
-        splits.extend(q.crossings(most_q));
-        splits.extend(q.crossings(-most_q));
+        put(&mut splits, eta.crossings(zero));
+        put(&mut splits, eta.crossings(most));
+        put(&mut splits, q.crossings(most_q));
+        put(&mut splits, q.crossings(-most_q));
         for (from, to) in parts(&mut splits) {
             let length = to - from;
             if eta.at(from + T::of(0.5) * length) <= zero {
@@ -145,12 +145,12 @@ impl<T: Real> Coupling<T> {
         ];
 
         let mut rows = [[zero; 8]; 8];
-        for (i, power) in powers.into_iter().enumerate() {
-            let mut moments = [zero; 4];
-            moments.copy_from_slice(&self.drive[i..i + 4]);
-            let (e, d) = work::<T>(h, moments);
-            for (row, force) in [(0, e.x()), (1, e.y()), (4, d.x()), (5, d.y())] {
-                rows[row] = sum(&[(one, rows[row]), (force, power)]);
+        for (moments, power) in self.drive.windows(4).zip(powers) {
+            let &[zeroth, first, second, third] = moments else { continue };
+            let (e, d) = work::<T>(h, [zeroth, first, second, third]);
+            let [ew, et, _, _, dw, dt, ..] = &mut rows;
+            for (row, force) in [(ew, e.x()), (et, e.y()), (dw, d.x()), (dt, d.y())] {
+                *row = sum(&[(one, *row), (force, power)]);
             }
         }
         rows[2] = sum(&[(-one, sigma)]);

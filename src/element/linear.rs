@@ -12,7 +12,7 @@
 //! where they vary, Galerkin takes the inverse of the mean of K instead of the mean of the inverse and
 //! is off by O(h^2), while this stays exact at nodes.
 
-use super::contact::parts;
+use super::contact::{parts, put};
 use super::hermite::Motion;
 use super::{Element, POINTS, Span};
 use crate::error::Error;
@@ -206,8 +206,8 @@ pub(crate) fn current<T: Real, M: Model<T>>(
         return source;
     }
     let mut splits: ArrayVec<T, 6> = ArrayVec::new();
-    splits.extend(eta.crossings(zero));
-    splits.extend(eta.crossings(most));
+    put(&mut splits, eta.crossings(zero));
+    put(&mut splits, eta.crossings(most));
     for (from, to) in parts(&mut splits) {
         let length = to - from;
         if eta.at(from + T::of(0.5) * length) <= zero {

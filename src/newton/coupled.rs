@@ -22,7 +22,7 @@ use super::{Context, Count, Halt, Level, Outcome, Residual, linearise, potential
 use crate::element::contact::{Contact, Tangent};
 use crate::element::coupled::Coupling;
 use crate::law::{Compliance, truncate, truncate_positive};
-use crate::profile::{Piece, Slot};
+use crate::profile::{Piece, Profile, Slot};
 use crate::real::{Pair, Quad, Real};
 use crate::scene::Model;
 use crate::storage::{Place, State};
@@ -57,7 +57,7 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
     /// makes a force mu1 R~ q, which bends a clamped beam by at most L^4 / (384 C) times it.
     pub(super) fn is_tied(&self) -> bool {
         let Context { model, ref onto, into, .. } = *self.context;
-        if onto.is_none() {
+        if !M::Mu1::PRESENT || onto.is_none() {
             return false;
         }
         let bounds = model.conduction();

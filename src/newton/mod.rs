@@ -229,7 +229,8 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
 
     /// Is bending in a loop with the potential?
     fn two_way(&self) -> bool {
-        self.context.onto.is_some() && self.context.into && M::Permittivity::PRESENT
+        let possible = M::Mu1::PRESENT && M::Mu2::PRESENT && M::Permittivity::PRESENT;
+        possible && self.context.onto.is_some() && self.context.into
     }
 
     /// u, q and the fluxes from the current penetration, to all digits.
@@ -753,8 +754,8 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         let length = model.length();
         let mut residual = Residual::none();
         let (mut from_left, mut from_right) = (swept.start.min(meeting), swept.end.max(meeting));
-        let mut west = match from_left.checked_sub(1) {
-            Some(before) => self.places[before].work.condensed,
+        let mut west = match self.places.get(..from_left).and_then(<[_]>::last) {
+            Some(before) => before.work.condensed,
             None => left.condensed,
         };
         let mut east = self.places.get(from_right).map_or(right.condensed, |p| p.work.condensed);
@@ -762,11 +763,11 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         while from_left < meeting || from_right > meeting {
             if from_left < meeting {
                 let i = from_left;
-                let (node, far) = match i.checked_sub(1).map(|before| &self.places[before].work) {
-                    Some(before) => (before.node, before.states[current].d),
+                let (before, Place { element, work }) = at(self.places, i).ok_or(Halt::Breakdown(i))?;
+                let (node, far) = match before {
+                    Some(before) => (before.work.node, before.work.states[current].d),
                     None => (self.node, T::Vec2::default()),
                 };
-                let Place { element, work } = &mut self.places[i];
                 let h = element.h;
                 let (contact, motion) = linearise(model, element, work, &node, current, onto, scale(i))
                     .map_err(|fault| Halt::Law(i, fault))?;
@@ -794,17 +795,14 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             if from_right > meeting {
                 from_right -= 1;
                 let i = from_right;
-                let node = match i.checked_sub(1) {
-                    Some(before) => self.places[before].work.node,
-                    None => self.node,
-                };
                 if M::Gap::PRESENT
                     && !step
                     && let Some(next) = self.places.get(i + 1)
                 {
                     east = east.shift(-next.element.gap.kink::<T>());
                 }
-                let Place { element, work } = &mut self.places[i];
+                let (before, Place { element, work }) = at(self.places, i).ok_or(Halt::Breakdown(i))?;
+                let node = before.map_or(self.node, |before| before.work.node);
                 let h = element.h;
                 let (contact, motion) = linearise(model, element, work, &node, current, onto, scale(i))
                     .map_err(|fault| Halt::Law(i, fault))?;
@@ -831,11 +829,11 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 (work.condensed, work.touch) = (east, contact.touch);
             }
         }
-        if let Some(Place { element, work }) = self.places.get(meeting) {
+        if let Some((Some(Place { work: before, .. }), Place { element, work })) = at(self.places, meeting) {
             // Both parts against each other, at the node where they meet.
-            let d = self.places[meeting - 1].work.states[current].d;
+            let d = before.states[current].d;
             let east = work.condensed.shift(-element.gap.kink::<T>());
-            let gap = self.places[meeting - 1].work.condensed.force(d) + east.force(d);
+            let gap = before.condensed.force(d) + east.force(d);
             residual.see(gap, T::Vec2::default(), T::zero());
             residual.see_force(gap.x(), length);
         }
@@ -914,7 +912,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     fn substitute(&mut self, step: bool) -> Option<Range<usize>> {
         let current = self.current;
         let meeting = self.meeting;
-        let (west, east) = self.places.split_at_mut(meeting);
+        let (west, east) = self.places.split_at_mut_checked(meeting)?;
         let met = west.last()?.work.condensed;
         let d = match east.first() {
             Some(Place { element, work }) => {
@@ -983,6 +981,16 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     }
 }
 
+/// An element and the one before it.
+type Neighbours<'a, T, M> = (Option<&'a Place<T, M>>, &'a mut Place<T, M>);
+
+/// Element i and the one before it.
+#[inline(always)]
+fn at<T: Real, M: Model<T>>(places: &mut [Place<T, M>], i: usize) -> Option<Neighbours<'_, T, M>> {
+    let (before, rest) = places.split_at_mut_checked(i)?;
+    Some((before.last(), rest.first_mut()?))
+}
+
 fn potential<T: Real, M: Model<T>>(
     element: &Element<T, M>,
     work: &Work<T, M>,
@@ -990,8 +998,8 @@ fn potential<T: Real, M: Model<T>>(
     ratio: &Option<Ratio<T>>,
 ) -> Cubic<T> {
     match ratio {
-        Some(ratio) => electric::potential(element, left, &work.node, ratio),
-        None => Cubic::default(),
+        Some(ratio) if M::Mu1::PRESENT => electric::potential(element, left, &work.node, ratio),
+        _ => Cubic::default(),
     }
 }
 

@@ -13,7 +13,7 @@ use crate::law::Compliance;
 use crate::profile::{Piece, Profile, Smooth};
 use crate::real::{Pair, Real};
 use crate::scene::Model;
-use crate::storage::{Node, Place, State};
+use crate::storage::{Node, Place, State, States};
 use crate::sweep::{Condensed, End};
 use crate::{Error, electric};
 use arrayvec::ArrayVec;
@@ -55,16 +55,17 @@ pub(crate) fn coarsen<T: Real, M: Model<T>>(
     places: &mut [Place<T, M>],
     elements: usize,
 ) -> Levels {
-    let pressed = pressed(model, &places[..elements]);
+    let pressed = pressed(model, places.get(..elements).unwrap_or_default());
     let mut levels = Levels::new();
-    levels.push((0, elements));
+    let _ = levels.try_push((0, elements));
     while let Some(&(start, len)) = levels.last() {
         // Without contact the first solve is the last.
         let linear = !M::Law::PRESENT && !M::Mu1::PRESENT;
         if linear || len <= COARSEST || levels.is_full() {
             break;
         }
-        let (fine, rest) = places[start..].split_at_mut(len);
+        let behind = places.get_mut(start..).unwrap_or_default();
+        let Some((fine, rest)) = behind.split_at_mut_checked(len) else { break };
         let mut made = 0;
         let mut from = 0;
         while from < len {
@@ -72,7 +73,7 @@ pub(crate) fn coarsen<T: Real, M: Model<T>>(
             let mut to = from + 1;
             while to < len
                 && to - from < MERGED
-                && !fine[to - 1].element.stop
+                && fine.get(to - 1).is_some_and(|place| !place.element.stop)
                 && !(pressed[0] && to - from >= from.max(1))
                 && !(pressed[1] && to - from >= (len - 1 - to).max(1))
             {
@@ -80,7 +81,9 @@ pub(crate) fn coarsen<T: Real, M: Model<T>>(
             }
             let Some(place) = rest.get_mut(made) else { break };
             let mut parts: ArrayVec<Element<T, M>, MERGED> = ArrayVec::new();
-            parts.extend(fine[from..to].iter().map(|p| p.element));
+            for place in fine.iter().take(to).skip(from) {
+                let _ = parts.try_push(place.element);
+            }
             place.element = Element::merge(&parts);
             made += 1;
             from = to;
@@ -89,7 +92,7 @@ pub(crate) fn coarsen<T: Real, M: Model<T>>(
         if from < len || made * 4 > len * 3 {
             break;
         }
-        levels.push((start + len, made));
+        let _ = levels.try_push((start + len, made));
     }
     levels
 }
@@ -263,8 +266,8 @@ pub(crate) fn solve<T: Real, M: Model<T>>(
     };
     // A beam that is pressed in at a clamp has no rigid limit: the moment there grows with the stiffness.
     let rigid = M::Law::PRESENT
-        && pressed(model, &places[..elements]) == [false; 2]
-        && places[..elements].iter().any(too_stiff);
+        && pressed(model, places.get(..elements).unwrap_or_default()) == [false; 2]
+        && places.iter().take(elements).any(too_stiff);
     let mut count = budget(settings, elements);
     let (most, share) = (count.most_visits, 40 * elements + 5000);
     if rigid {
@@ -276,7 +279,7 @@ pub(crate) fn solve<T: Real, M: Model<T>>(
     }
     count.most_visits = most;
     for &(start, len) in levels {
-        for place in &mut places[start..start + len] {
+        for place in places.iter_mut().skip(start).take(len) {
             place.element.soften(law);
         }
     }
@@ -287,7 +290,7 @@ pub(crate) fn solve<T: Real, M: Model<T>>(
 /// Takes back what a solve did to the laws in `places` that found the foundation rigid.
 pub(crate) fn harden<T: Real, M: Model<T>>(model: &M, places: &mut [Place<T, M>], levels: &Levels) {
     let Some(&(_, elements)) = levels.first() else { return };
-    for place in &mut places[..elements] {
+    for place in places.iter_mut().take(elements) {
         place.element.harden(model.foundation().law);
     }
     coarsen(model, places, elements);
@@ -302,23 +305,22 @@ fn descend<T: Real, M: Model<T>>(
     count: &mut Count,
 ) -> Result<Answer<T, M>, Error> {
     let elements = levels.first().map_or(0, |&(_, len)| len);
-    let context = context(model, &places[..elements], settings.stop);
+    let context = context(model, places.get(..elements).unwrap_or_default(), settings.stop);
     let mut outcome = Ok(Outcome::Stalled);
     let mut state = 0;
     for (rank, &(start, len)) in levels.iter().enumerate().rev() {
         let coarsest = rank + 1 == levels.len();
-        let (head, tail) = places.split_at_mut(start + len);
-        let mesh = &mut head[start..];
+        let Some((head, tail)) = places.split_at_mut_checked(start + len) else { break };
+        let mesh = head.get_mut(start..).unwrap_or_default();
         if coarsest {
             for place in mesh.iter_mut() {
-                place.work.states = [State::default(); 2];
+                place.work.states = States::default();
             }
-        } else {
-            let (_, coarse_len) = levels[rank + 1];
-            prolong(mesh, &tail[..coarse_len], state);
+        } else if let Some(&(_, coarse_len)) = levels.get(rank + 1) {
+            prolong(mesh, tail.get(..coarse_len).unwrap_or_default(), state);
         }
         let mut level = Level::new(&context, mesh);
-        if context.onto.is_some() && !context.into {
+        if M::Mu1::PRESENT && context.onto.is_some() && !context.into {
             level.electric();
         }
         // A halt on a coarser mesh is one on all: what it found is only carried on.
@@ -448,7 +450,8 @@ pub(crate) fn follow<T: Real, M: Model<T>>(
 impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
     /// From nothing.
     fn begin(&mut self, stop: T, finest: bool, count: &mut Count) -> Result<Outcome, Halt> {
-        if self.context.onto.is_none() {
+        // What the type rules out is not compiled: the coupled method is half of the code.
+        if !M::Mu1::PRESENT || self.context.onto.is_none() {
             return self.cold(stop, finest, count);
         }
         // Without the potential's action the state is the least of a convex energy: the start for the rest.
@@ -486,7 +489,7 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
         } else if finest {
             // The coarser meshes misled: start anew on this one.
             for place in self.places.iter_mut() {
-                place.work.states = [State::default(); 2];
+                place.work.states = States::default();
             }
             self.begin(stop, true, count)
         } else {
@@ -518,7 +521,7 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
         let stiffness = self.stiffness();
         let widest = self.places.iter().fold(T::zero(), |m, p| m.max(p.element.h)) * T::of(MERGED as f64);
         let scale = T::of(4.0) * self.bending() / stiffness / widest.powi(4);
-        if scale >= T::one() && self.context.onto.is_some() {
+        if M::Mu1::PRESENT && scale >= T::one() && self.context.onto.is_some() {
             // Not the contact's layers: the potential's action is what does not settle.
             return self.descend_coupled(T::one(), stop, if finest { 4 * STAGE } else { STAGE }, count);
         }
