@@ -114,6 +114,7 @@ mod error;
 mod history;
 mod law;
 mod mesh;
+mod methods;
 mod newton;
 mod problem;
 mod profile;
@@ -131,6 +132,7 @@ pub use error::{Error, Place};
 pub use history::History;
 pub use law::{Compliance, Law, Linear, Power, Tabulated, truncate, truncate_positive};
 pub use mesh::Mesh;
+pub use methods::{BermudezMoreno, Compared, Method};
 pub use newton::{Report, Settings, Status};
 pub use problem::{Prepared, Problem};
 pub use profile::{

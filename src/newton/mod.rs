@@ -161,7 +161,7 @@ pub(crate) struct Count {
 
 impl Count {
     /// Counts visits, or says that they are over the cap.
-    fn spend(&mut self, visits: usize) -> Result<(), Halt> {
+    pub(crate) fn spend(&mut self, visits: usize) -> Result<(), Halt> {
         if visits > self.most_visits - self.visits {
             return Err(Halt::Budget);
         }
@@ -957,7 +957,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     }
 }
 
-fn potential<T: Real, M: Model<T>>(
+pub(crate) fn potential<T: Real, M: Model<T>>(
     element: &Element<T, M>,
     work: &Work<T, M>,
     left: &Node<T, M>,
