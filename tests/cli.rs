@@ -288,3 +288,34 @@ fn extremes_make_a_document() {
     assert!(text.starts_with("# Extremes\n\n`cargo beam extremes --quick --format markdown"), "{text}");
     assert!(refusal(&folder, line).contains("--force"));
 }
+
+#[test]
+fn methods_of_the_paper_are_named_and_judged() {
+    let folder = folder();
+    for (method, elements, status) in [
+        ("newton", 96, "converged"),
+        ("gauss", 96, "own_equations"),
+        ("elementwise", 96, "foundation_pulls"),
+        ("bermudez-moreno", 96, "own_equations"),
+    ] {
+        let line =
+            format!("solve halves.toml --elements {elements} --method {method} --format json --samples 3");
+        let output = piezobeam(folder.path(), &line);
+        assert_eq!(output.status.code(), Some(i32::from(status != "converged")), "{method}");
+        let value: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        assert_eq!(value["status"], status, "{method}");
+        assert_eq!(value["method"]["name"], method);
+        assert_eq!(value["method"]["own_residual"].is_null(), method == "newton");
+        let middle = value["samples"]["bending"][1].as_f64().expect("a number");
+        assert!((middle + 0.0637).abs() < 1e-4, "{method}: {middle}");
+    }
+    let output = piezobeam(folder.path(), "solve halves.toml --elements 96 --method elementwise");
+    let said = text(&output.stdout);
+    assert!(
+        said.starts_with("NOT CONVERGED (foundation_pulls)") && said.contains("Try --method newton"),
+        "{said}"
+    );
+    assert!(refusal(&folder, "solve halves.toml --rho 0.5").contains("--method bermudez-moreno"));
+    let line = "solve halves.toml --method bermudez-moreno --omega 1e7 --mu 1e-7";
+    assert!(refusal(&folder, line).contains("at most 1 / (2 omega)"));
+}

@@ -261,14 +261,14 @@ fn other_laws_and_precisions_are_seen_too() {
         }
     };
     let scene = beam().foundation(Foundation { law: hertz, gap: () });
-    near(METHODS.map(|m| bent(&scene, 200, Some(m)).1), bent(&scene, 200, None).1);
+    near(METHODS.map(|m| bent(scene, 200, Some(m)).1), bent(scene, 200, None).1);
     let scene = beam().foundation(Foundation { law: table, gap: 1e-3 });
-    near(METHODS.map(|m| bent(&scene, 200, Some(m)).1), bent(&scene, 200, None).1);
+    near(METHODS.map(|m| bent(scene, 200, Some(m)).1), bent(scene, 200, None).1);
 
     let falling = Law(|_: f64, r: f64| (1e6 * r, -1.0));
     let scene = beam().foundation(Foundation { law: falling, gap: () });
     for method in METHODS {
-        let status = bent(&scene, 20, Some(method)).0.report.status;
+        let status = bent(scene, 20, Some(method)).0.report.status;
         assert!(matches!(status, Status::LawNotMonotone { .. }), "{method:?}: {status:?}");
     }
 
@@ -310,7 +310,7 @@ proptest! {
         let scene = Scene::new(1.0, Beam::elastic(5000.0))
             .foundation(Foundation { law: Linear(10f64.powf(stiffness)), gap })
             .load(Load { transverse: Steps { breaks: &breaks, values: &values }, axial: (), points: () });
-        let (ours, exact) = bent(&scene, elements, None);
+        let (ours, exact) = bent(scene, elements, None);
         for method in METHODS {
             let settings = Settings { max_visits: Some(2000 * elements), ..Settings::default() };
             let (found, bending) = prepared(&scene, elements, |beam| {

@@ -14,10 +14,12 @@ mod render;
 mod report;
 mod scene_file;
 mod sensitivities;
+mod sweep;
 mod tasks;
 
 use cli::{
-    CheckArgs, Cli, Command, ExtremesArgs, Format, PaperArgs, SolveArgs, TableFormat, TimeArgs, TimeFormat,
+    CheckArgs, Cli, Command, ExtremesArgs, Format, PaperArgs, SolveArgs, SweepArgs, TableFormat, TimeArgs,
+    TimeFormat,
 };
 use indicatif::{ProgressBar, ProgressStyle};
 use report::{Checked, Picture};
@@ -38,6 +40,7 @@ fn main() -> ExitCode {
     let outcome = match Cli::read().command {
         Command::Solve(args) => solve(&args),
         Command::Check(args) => check(&args),
+        Command::Sweep(args) => sweep(&args),
         Command::Paper(args) => paper(&args),
         Command::Time(args) => time(&args),
         Command::Extremes(args) => extremes(&args),
@@ -58,7 +61,8 @@ fn solve(args: &SolveArgs) -> Outcome {
     }
     let file = scene_file::read(&args.scene)?;
     let run = |samples| {
-        let task = tasks::Solve { stop: args.stop, samples, sensitivities: args.sensitivities };
+        let task =
+            tasks::Solve { stop: args.stop, samples, sensitivities: args.sensitivities, method: args.method };
         model::with(&file, args.elements, args.precision, task).map_err(|e| file.complaint(&e))
     };
     let solved = run(args.samples)?;
@@ -101,6 +105,31 @@ fn check(args: &CheckArgs) -> Outcome {
     Ok(true)
 }
 
+fn sweep(args: &SweepArgs) -> Outcome {
+    for path in args.out.iter().chain(&args.plot) {
+        output::check(path, args.force)?;
+    }
+    let table = sweep::run(args, &progress(0, "scenes"))?;
+    let mut files: Vec<(PathBuf, Vec<u8>)> = Vec::new();
+    if let Some(plot) = &args.plot {
+        let name = args.scene.to_string_lossy();
+        files.push((plot.clone(), render::sweep::plot(&table, &name).into_bytes()));
+    }
+    match &args.out {
+        #[cfg(feature = "parquet")]
+        Some(path) if args.is_parquet() => files.push((path.clone(), sweep::parquet::bytes(&table)?)),
+        Some(path) => files.push((path.clone(), table.csv().into_bytes())),
+        None => output::print(&table.csv())?,
+    }
+    output::write_all(&files, args.force)?;
+    let (failed, scenes) = (table.failed(), table.len());
+    table.finish();
+    if failed > 0 {
+        eprintln!("piezobeam: {failed} of {scenes} scenes did not converge; the column status says why");
+    }
+    Ok(failed == 0)
+}
+
 fn paper(args: &PaperArgs) -> Outcome {
     let paper::Paper { table, files, converged } = paper::run(&args.out)?;
     for (path, _) in &files {
@@ -114,11 +143,8 @@ fn paper(args: &PaperArgs) -> Outcome {
 
 fn time(args: &TimeArgs) -> Outcome {
     let file = scene_file::read(&args.scene)?;
-    // On a terminal only, and drawn a few times a second at most: the solves are timed one by one.
-    let bar = ProgressBar::new(args.repeat as u64);
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} solves, {eta} left") {
-        bar.set_style(style);
-    }
+    // Drawn a few times a second at most: the solves are timed one by one.
+    let bar = progress(args.repeat as u64, "solves");
     let task = tasks::Time { repeat: args.repeat, progress: &|| bar.inc(1) };
     let timing = model::with(&file, args.elements, args.precision, task).map_err(|e| file.complaint(&e))?;
     bar.finish_and_clear();
@@ -147,6 +173,17 @@ fn extremes(args: &ExtremesArgs) -> Outcome {
         eprintln!("piezobeam: {} of {} rows are wrong", table.wrong, table.rows);
     }
     Ok(table.wrong == 0)
+}
+
+/// How far it is, on a terminal only.
+fn progress(length: u64, what: &str) -> ProgressBar {
+    let bar = ProgressBar::new(length);
+    if let Ok(style) =
+        ProgressStyle::with_template(&format!("{{bar:40}} {{pos}}/{{len}} {what}, {{eta}} left"))
+    {
+        bar.set_style(style);
+    }
+    bar
 }
 
 fn picture(file: &SceneFile, solved: tasks::Solved) -> Picture {

@@ -1,9 +1,10 @@
 //! What the commands do with a scene: solve it, check it, time it.
 
+use crate::cli::MethodArgs;
 use crate::model::Task;
-use crate::report::{Contact, Reaction, Report, Resultants, Samples, Timing, Uniqueness};
+use crate::report::{Contact, Method, Reaction, Report, Resultants, Samples, Timing, Uniqueness};
 use crate::sensitivities;
-use piezobeam::{Error, Fields, HeapWorkspace, Model, Problem, Real, Settings, Solution, Status};
+use piezobeam::{Error, Fields, HeapWorkspace, Model, Prepared, Problem, Real, Settings, Solution, Status};
 use std::time::Instant;
 
 /// A solved scene with its fields at uniform points, and the gap there.
@@ -18,6 +19,7 @@ pub struct Solve {
     pub stop: Option<f64>,
     pub samples: usize,
     pub sensitivities: bool,
+    pub method: MethodArgs,
 }
 
 impl Task for Solve {
@@ -25,7 +27,10 @@ impl Task for Solve {
     fn run<T: Real, M: Model<T>>(self, problem: Problem<'_, T, M>) -> Result<Solved, Error> {
         let mut memory = HeapWorkspace::new();
         let mut prepared = problem.prepare(&mut memory)?;
-        let mut solved = solved(&prepared.solution(&settings::<T>(self.stop))?, self.samples);
+        let method = solve_by(&self.method, &mut prepared, self.stop)?;
+        let solution = prepared.last().ok_or(NOTHING)?;
+        let mut solved = solved(&solution, self.samples);
+        solved.report.method = method;
         if self.sensitivities {
             solved.report.sensitivities = Some(sensitivities::of(&mut prepared));
         }
@@ -83,6 +88,30 @@ impl Task for Time<'_> {
             bytes_per_element: HeapWorkspace::<T, M>::BYTES_PER_ELEMENT,
         })
     }
+}
+
+/// There is a solution after every solve.
+const NOTHING: Error = Error::Missing { field: "mesh", needed_by: "the solve" };
+
+/// Solves by the method that was asked for, and gives what there is to say of that.
+pub fn solve_by<T: Real, M: Model<T>>(
+    method: &MethodArgs,
+    prepared: &mut Prepared<'_, T, M>,
+    stop: Option<f64>,
+) -> Result<Method, Error> {
+    let settings = settings::<T>(stop);
+    let name = method.method.name();
+    let Some(method) = method.method::<T>() else {
+        prepared.solve(&settings)?;
+        return Ok(Method { name, ..Method::default() });
+    };
+    let found = prepared.solve_by(&method, &settings)?;
+    Ok(Method {
+        name,
+        own_residual: Some(found.own_residual.f64()),
+        lowest_pressure: Some(found.lowest_pressure.f64()),
+        highest_pressure: Some(found.highest_pressure.f64()),
+    })
 }
 
 fn settings<T: Real>(stop: Option<f64>) -> Settings<T> {
@@ -147,6 +176,7 @@ fn solved<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>, samples: usize) -
             equilibrium_error: found.equilibrium_error.f64(),
         },
         precision: core::any::type_name::<T>().into(),
+        method: Method::default(),
         sensitivities: None,
     };
     Solved { report, gap }

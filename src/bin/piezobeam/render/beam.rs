@@ -62,6 +62,7 @@ pub fn panel(area: &Area, picture: &Picture) -> Drawn {
         y: y.clone(),
         x_label: &x_label,
         downwards: true,
+        logarithmic: false,
     };
     let scales = frame.magnified(area, &along, &across);
     frame.note = match (gap.is_some(), cut) {

@@ -25,6 +25,7 @@ pub const GREEN: RGBColor = RGBColor(0, 158, 115);
 pub const VERMILLION: RGBColor = RGBColor(213, 94, 0);
 pub const PURPLE: RGBColor = RGBColor(204, 121, 167);
 pub const ORANGE: RGBColor = RGBColor(230, 159, 0);
+pub const SKY: RGBColor = RGBColor(86, 180, 233);
 
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 pub type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
@@ -100,6 +101,8 @@ pub struct Frame<'a> {
     pub x_label: &'a str,
     /// Print the ordinates with their sign changed: for an axis that counts downwards.
     pub downwards: bool,
+    /// Abscissas are logarithms to the base ten; print the numbers themselves.
+    pub logarithmic: bool,
 }
 
 /// Room around the plotting area, pixels.
@@ -159,7 +162,7 @@ impl Frame<'_> {
             .label_style(label(12, INK))
             .axis_desc_style(label(12, INK))
             .x_desc(self.x_label)
-            .x_label_formatter(&|&v| tick(v, dx))
+            .x_label_formatter(&|&v| if self.logarithmic { power(v) } else { tick(v, dx) })
             .y_label_formatter(&|&v| tick(sign * v, dy))
             .draw()?;
         Ok(chart)
@@ -170,6 +173,15 @@ impl Frame<'_> {
 fn tick(value: f64, span: f64) -> String {
     let value = if value.abs() < 1e-9 * span { 0.0 } else { value };
     significant(value, 6).replace('-', "−")
+}
+
+/// A tick's number on a logarithmic axis.
+fn power(exponent: f64) -> String {
+    let whole = exponent.round();
+    if (exponent - whole).abs() < 1e-9 {
+        return format!("1e{whole:.0}").replace('-', "−");
+    }
+    significant(10f64.powf(exponent), 2).replace('-', "−")
 }
 
 /// The range of `values` with `below` and `above` parts of its span added; never so narrow that ticks run out of digits.

@@ -72,6 +72,7 @@ fn draw_deformed(root: &Area, picture: &Picture) -> Drawn {
         y,
         x_label: &x_label,
         downwards: false,
+        logarithmic: false,
     };
     let scales = frame.magnified(root, &along, &across);
     frame.note = match folded {

@@ -11,6 +11,7 @@ pub mod figures;
 pub mod fixture;
 pub mod json;
 pub mod overview;
+pub mod sweep;
 pub mod text;
 
 use crate::report::Samples;

@@ -92,6 +92,7 @@ pub fn panel(area: &Area, picture: &Picture, field: &Field, note: &str) -> Drawn
         y: y.clone(),
         x_label: &x_label,
         downwards: false,
+        logarithmic: false,
     };
     let mut chart = frame.draw(area)?;
     for [a, b] in picture.report.contact.iter().flat_map(|c| &c.zones) {

@@ -13,6 +13,9 @@ impl SceneFile {
             Error::Value { field: "stop", .. } => {
                 return FileError::new("--stop", error.to_string());
             }
+            Error::Value { field: field @ ("omega" | "mu" | "rho"), .. } => {
+                return FileError::new(&format!("--{field}"), error.to_string());
+            }
             Error::Value { field, .. } => (field.into(), unit(field)),
             Error::Jump { field, .. } => (field.into(), "give pieces whose values meet at the break".into()),
             Error::Missing { field, needed_by } => (field.into(), format!("add it, or take {needed_by} out")),

@@ -17,10 +17,16 @@ const LARGEST: u64 = 1 << 20;
 /// When the path is not a regular file of at most 1 MiB of UTF-8 text, or when
 /// the text is not a scene.
 pub fn read(path: &Path) -> Result<SceneFile, FileError> {
+    let (name, text) = load(path)?;
+    super::parse(&text, &name)
+}
+
+/// The name which messages use, and the text.
+pub(super) fn load(path: &Path) -> Result<(String, String), FileError> {
     let name = path.to_string_lossy();
     let bytes = bytes(path, &name)?;
-    let text = text(&bytes, &name)?;
-    super::parse(text, &name)
+    let text = text(&bytes, &name)?.to_owned();
+    Ok((name.into_owned(), text))
 }
 
 /// The content of a regular file of bounded size.
