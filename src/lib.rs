@@ -68,6 +68,11 @@
 //! [`History`] solves scenes one after the other, each from the last solution, and visits only what changed.
 //! [`Prepared::tangent`] and [`Prepared::adjoint`] differentiate a solution.
 //!
+//! # The paper's own methods
+//!
+//! [`Prepared::solve_by`] solves by a [`Method`] of the paper, to compare with: what it ends at is held to the same
+//! residual.
+//!
 //! # Memory
 //!
 //! Nothing is allocated in a solve. [`Workspace`] holds a fixed number of elements where you put it;
@@ -82,6 +87,7 @@
 //! | `libm` | elementary functions without it: `--no-default-features --features libm` |
 //! | `alloc` | [`HeapWorkspace`], [`Solution::zones`] |
 //! | `cli` | the command line |
+//! | `parquet` | the command line's tables as Parquet files |
 //!
 //! # Guarantees and limits
 //!
