@@ -236,7 +236,7 @@ fn a_table_can_be_drawn() {
         "scene.toml",
         "Largest bending [m]",
         "Contact force [kN]",
-        "foundation.stiffness",
+        "foundation.stiffness [N/m²]",
         "1e10",
         "load.transverse.values[1] = 0",
     ] {

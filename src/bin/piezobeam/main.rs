@@ -191,7 +191,7 @@ fn picture(file: &SceneFile, solved: tasks::Solved) -> Picture {
         title: file.name.clone(),
         length: file.length,
         gap: solved.gap,
-        facts: Vec::new(),
+        facts: file.facts(),
         report: solved.report,
     }
 }

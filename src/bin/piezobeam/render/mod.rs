@@ -121,6 +121,11 @@ impl Scale {
     }
 }
 
+/// A number of things.
+fn counted(n: usize, noun: &str) -> String {
+    format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
+}
+
 /// `value` (SI) with a prefix of its own.
 pub fn quantity(value: f64, unit: &str, digits: usize) -> String {
     Scale::new(value, unit).show(value, digits)

@@ -5,10 +5,11 @@ use plotters::prelude::*;
 
 use super::chart::{
     Area, BLUE, Drawn, FAINT, FINE, Frame, GREEN, INK, ORANGE, PURPLE, SKY, VERMILLION, curve, heading,
-    padded, page, shortened, words,
+    padded, page, shortened, typeset, words,
 };
 use super::{Scale, significant};
 use crate::report::CONVERGED;
+use crate::scene_file::unit;
 use crate::sweep::{COLUMNS, Table, Vary};
 
 const WIDTH: i32 = 960;
@@ -105,22 +106,29 @@ fn curves(table: &Table, rows: usize) -> Vec<Curve> {
         .collect()
 }
 
-/// One of a few colours that are told apart with any kind of vision, or of many shades from light to dark.
+/// One of a few colours that are told apart with any kind of vision, or of many shades from blue to orange, which
+/// are.
 fn colour(i: usize, of: usize) -> RGBColor {
     if of <= COLOURS.len() {
         return COLOURS[i % COLOURS.len()];
     }
     let share = i as f64 / (of - 1) as f64;
-    let between = |light: f64, dark: f64| (light + share * (dark - light)).round() as u8;
-    RGBColor(between(150.0, 8.0), between(205.0, 29.0), between(235.0, 88.0))
+    let between =
+        |from: u8, to: u8| (f64::from(from) + share * (f64::from(to) - f64::from(from))).round() as u8;
+    let (from, to) = (SKY, VERMILLION);
+    RGBColor(between(from.0, to.0), between(from.1, to.1), between(from.2, to.2))
 }
 
-/// What stands for which colour; of many shades the lightest and the darkest.
-fn keys(curves: &[Curve]) -> Vec<(&str, RGBColor)> {
+/// What stands for which colour; of many shades the first and the last.
+fn keys(curves: &[Curve]) -> Vec<(String, RGBColor)> {
+    let key = |curve: &Curve| (typeset(&curve.name), curve.colour);
     match curves {
         [] | [_] => Vec::new(),
-        few if few.len() <= COLOURS.len() => few.iter().map(|c| (c.name.as_str(), c.colour)).collect(),
-        [first, .., last] => vec![(&first.name, first.colour), ("to", INK), (&last.name, last.colour)],
+        few if few.len() <= COLOURS.len() => few.iter().map(key).collect(),
+        [first, between @ .., last] => {
+            let middle = (format!("{} between, in shades", between.len()), between[between.len() / 2].colour);
+            vec![key(first), middle, key(last)]
+        }
     }
 }
 
@@ -128,21 +136,25 @@ fn keys(curves: &[Curve]) -> Vec<(&str, RGBColor)> {
 fn panel(
     area: &Area,
     vary: &Vary,
-    (name, unit): (&str, &str),
+    (name, of): (&str, &str),
     curves: &[Curve],
     point: impl Fn(usize) -> Option<(f64, f64, bool)>,
 ) -> Drawn {
     let all = || curves.iter().flat_map(|curve| &curve.rows).filter_map(|&row| point(row));
-    let scale = Scale::of(all().map(|p| p.1), unit);
+    let scale = Scale::of(all().map(|p| p.1), of);
     let along = |x: f64| if vary.logarithmic { x.log10() } else { x };
     let x = padded(all().map(|p| along(p.0)), 0.02, 0.02);
+    let label = match unit(&vary.path) {
+        Some(unit) => typeset(&format!("{} [{unit}]", vary.path)),
+        None => vary.path.clone(),
+    };
     let frame = Frame {
         title: &format!("{name} [{}]", scale.unit),
         note: String::new(),
         colour: None,
         x,
         y: padded(all().map(|p| p.1 * scale.factor), 0.08, 0.08),
-        x_label: &vary.path,
+        x_label: &label,
         downwards: false,
         logarithmic: vary.logarithmic,
     };

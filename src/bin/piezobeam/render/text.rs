@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use comfy_table::{CellAlignment, Table, presets};
 
-use super::{extremes, fields, quantity, significant, zones};
+use super::{counted, extremes, fields, quantity, significant, zones};
 use crate::report::{Checked, Picture, Report, Sensitivities, Timing, Uniqueness};
 
 const DIGITS: usize = 6;
@@ -245,10 +245,6 @@ pub(super) fn lines(mut table: Table) -> String {
         out.push('\n');
     }
     out
-}
-
-fn counted(n: usize, noun: &str) -> String {
-    format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
 }
 
 #[cfg(test)]

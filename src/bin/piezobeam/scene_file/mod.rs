@@ -23,6 +23,7 @@ mod table;
 
 use toml::de::DeTable;
 
+pub use complaint::unit;
 pub use entries::{Entries, Entry};
 pub use error::FileError;
 
