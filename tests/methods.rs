@@ -91,7 +91,7 @@ fn where_the_kink_is_integrated_decides_the_order() {
 #[test]
 fn quiet_false_ends_of_the_set_by_elements_are_named() {
     for (k, n, iterations, xi) in
-        [(1e8, 96, 6, -0.06368), (1e12, 24, 3, -0.000_315), (1e16, 96, 3, -0.000_001_58)]
+        [(1e8, 96, 6, -0.06368), (1e12, 24, 3, -0.000_315), (1e16, 96, 3, -0.000_001_576)]
     {
         let (found, bending) = bent(halves(k), n, Some(Method::Elementwise));
         // Nothing changes any more ...
@@ -138,6 +138,22 @@ fn without_an_edge_inside_elements_all_methods_converge_to_the_same() {
             assert_eq!(found.report.status, Status::Converged, "{name} {method:?}: {found:?}");
             assert!(found.report.residual <= 1e-10 && found.own_residual <= 1e-10);
             assert!(differ(&bending, &exact) < tol::METHODS, "{name} {method:?}");
+        }
+    }
+}
+
+#[test]
+fn a_loose_stop_is_kept_by_moments_too() {
+    for k in [1e6, 1e8, 1e10, 1e12] {
+        for stop in [1e-2, 1e-4, 1e-8] {
+            // All of the beam is in contact: no edge inside elements.
+            let scene = Scene::new(1.0, Beam::elastic(5000.0))
+                .foundation(Foundation { law: Linear(k), gap: () })
+                .load(Load { transverse: 1e6, axial: (), points: () });
+            let settings = Settings { stop, ..Settings::default() };
+            let found = prepared(scene, 100, |beam| beam.solve_by(&DUAL, &settings)).expect("in range");
+            assert_eq!(found.report.status, Status::Converged, "{k:e} {stop:e}: {found:?}");
+            assert!(found.own_residual <= stop && found.report.residual <= stop);
         }
     }
 }

@@ -68,8 +68,9 @@ pub struct Compared<T> {
     /// The end, judged like that of [`Prepared::solve`]: its residual is not the method's own but that of statics
     /// with the law integrated up to the contact's edges.
     pub report: Report<T>,
-    /// The method's own residual: the last relative change of the moments, or of the contact forces at the Gauss
-    /// points between what the state was found with and what it makes them, whichever is larger.
+    /// The method's own residual, relative: what the contact forces at the Gauss points were when the state was found
+    /// against what it makes them, the moments of this difference, or the last change of the moments, whichever is
+    /// largest.
     pub own_residual: T,
     /// The lowest of the method's contact pressures p \[N/m\]: negative where the foundation pulls.
     pub lowest_pressure: T,
@@ -234,6 +235,8 @@ impl<T: Real, M: Model<T>> Paper<'_, '_, T, M> {
         let last = self.places.len().saturating_sub(1);
         let mut near = right.close(&part).ok_or(Halt::Breakdown(last))?;
         let mut change = Change::none();
+        // Force and moment, at the node at hand, of the forces that are out of balance to its right.
+        let (mut force, mut moment) = (T::zero(), T::zero());
         for i in (0..self.places.len()).rev() {
             let node = match i.checked_sub(1) {
                 Some(before) => self.places[before].work.node,
@@ -244,22 +247,31 @@ impl<T: Real, M: Model<T>> Paper<'_, '_, T, M> {
             let (e, far) = work.factor.substitute(near, element.h);
             let bent = element.bending.times(e - work.states[0].e);
             work.states[0] = State { e, d: near };
-            for moment in [bent.y(), bent.y() - element.h * bent.x()] {
+            let h = element.h;
+            for moment in [bent.y(), bent.y() - h * bent.x()] {
                 change.moment = larger(change.moment, moment.abs());
             }
             change.largest_moment = larger(change.largest_moment, element.largest_moment(e));
+            change.largest_force = larger(change.largest_force, element.fr.x().abs() / h);
             near = if M::Gap::PRESENT { far + element.gap.kink::<T>() } else { far };
 
             // The law's forces in the new state against those that it was found with.
             let sight = Sight::new(model, &self.places[i], &node, self.context);
             let law = self.decided(&sight).map_err(|fault| Halt::Law(i, fault))?;
-            for ((r, found), law) in sight.penetration().into_iter().zip(linear).zip(law) {
-                let force = law.0 * r - law.1;
-                change.force = larger(change.force, (found.0 * r - found.1 - force).abs());
-                change.largest_force = larger(change.largest_force, force.abs());
+            moment = moment + h * force;
+            for (point, (t, weight)) in rule::<POINTS>().into_iter().enumerate() {
+                let (found, law) = (linear[point], law[point]);
+                let t = T::of(t);
+                let r = sight.eta.at(t);
+                let pressure = law.0 * r - law.1;
+                let open = found.0 * r - found.1 - pressure;
+                change.force = larger(change.force, open.abs());
+                change.largest_force = larger(change.largest_force, pressure.abs());
+                let part = T::of(weight) * h * open;
+                force = force + part;
+                moment = moment + part * h * (T::one() - t);
             }
-            let Place { element, .. } = &self.places[i];
-            change.largest_force = larger(change.largest_force, element.fr.x().abs() / element.h);
+            change.moment = larger(change.moment, moment.abs());
             if let Rule::BermudezMoreno(parameters) = &self.rule {
                 let multiplier = parameters.update(&sight, multiplier(&self.places[i]));
                 let [a, b, c, d] = multiplier.map_err(|fault| Halt::Law(i, fault))?;
