@@ -319,3 +319,25 @@ fn methods_of_the_paper_are_named_and_judged() {
     let line = "solve halves.toml --method bermudez-moreno --omega 1e7 --mu 1e-7";
     assert!(refusal(&folder, line).contains("at most 1 / (2 omega)"));
 }
+
+#[test]
+fn the_report_holds_and_shows_its_pictures() {
+    let folder = folder();
+    let output = piezobeam(folder.path(), "report --quick --out found");
+    assert_eq!(output.status.code(), Some(0), "{}{}", text(&output.stdout), text(&output.stderr));
+    let said = text(&output.stdout);
+    assert!(said.lines().filter(|line| line.starts_with("holds: ")).count() >= 4, "{said}");
+    assert!(!said.contains("FAILS"), "{said}");
+    let document = std::fs::read_to_string(folder.path().join("found/report.md")).expect("a document");
+    assert!(
+        document.starts_with("# Report\n\n`cargo beam report --quick`\n\n## The paper reproduced"),
+        "{document}"
+    );
+    let pictures: Vec<_> = document.lines().filter_map(|line| line.strip_prefix("![")).collect();
+    assert_eq!(pictures.len(), 8);
+    for picture in pictures {
+        let name = picture.split_once("](").and_then(|(_, rest)| rest.strip_suffix(')')).expect("a link");
+        assert!(folder.path().join("found").join(name).is_file(), "{name}");
+    }
+    assert!(refusal(&folder, "report --quick --out found").contains("--force"));
+}

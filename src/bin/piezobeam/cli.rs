@@ -87,6 +87,11 @@ pub enum Command {
     /// Recompute the examples of the paper and draw its figures as SVG files
     #[command(after_help = "Example:\n  piezobeam paper --out figures --force")]
     Paper(PaperArgs),
+    /// Compute anew what is said of the paper, as a document with pictures
+    #[command(
+        after_help = "Example:\n  piezobeam report --quick --out report\n\nExit status 1: something does not hold."
+    )]
+    Report(ReportArgs),
     /// Measure how long a scene takes to solve
     #[command(after_help = "Example:\n  piezobeam time beam.toml --elements 10000 --repeat 20 --format json")]
     Time(TimeArgs),
@@ -220,6 +225,19 @@ impl SweepArgs {
 pub struct PaperArgs {
     /// Directory for the figures; made if it is not there
     #[arg(long, value_name = "DIR", default_value = "paper")]
+    pub out: PathBuf,
+    /// Replace output files that exist
+    #[arg(long)]
+    pub force: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct ReportArgs {
+    /// Leave out what takes more than some seconds
+    #[arg(long)]
+    pub quick: bool,
+    /// Directory for the document and its pictures; made if it is not there
+    #[arg(long, value_name = "DIR", default_value = "report")]
     pub out: PathBuf,
     /// Replace output files that exist
     #[arg(long)]

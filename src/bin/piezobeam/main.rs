@@ -4,6 +4,7 @@
 #![allow(clippy::expect_used, reason = "renderers draw into memory, which cannot fail; each place says why")]
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::panic, reason = "a test that panics has failed"))]
 
+mod chapters;
 mod cli;
 mod extremes;
 mod model;
@@ -18,8 +19,8 @@ mod sweep;
 mod tasks;
 
 use cli::{
-    CheckArgs, Cli, Command, ExtremesArgs, Format, PaperArgs, SolveArgs, SweepArgs, TableFormat, TimeArgs,
-    TimeFormat,
+    CheckArgs, Cli, Command, ExtremesArgs, Format, PaperArgs, ReportArgs, SolveArgs, SweepArgs, TableFormat,
+    TimeArgs, TimeFormat,
 };
 use indicatif::{ProgressBar, ProgressStyle};
 use report::{Checked, Picture};
@@ -42,6 +43,7 @@ fn main() -> ExitCode {
         Command::Check(args) => check(&args),
         Command::Sweep(args) => sweep(&args),
         Command::Paper(args) => paper(&args),
+        Command::Report(args) => report(&args),
         Command::Time(args) => time(&args),
         Command::Extremes(args) => extremes(&args),
     };
@@ -139,6 +141,17 @@ fn paper(args: &PaperArgs) -> Outcome {
     output::write_all(&files, args.force)?;
     output::print(&table)?;
     Ok(converged)
+}
+
+fn report(args: &ReportArgs) -> Outcome {
+    let chapters::Document { files, summary, holds } = chapters::run(args.quick, &args.out)?;
+    for (path, _) in &files {
+        output::check(path, args.force)?;
+        output::make_directory(path.parent().unwrap_or(&args.out))?;
+    }
+    output::write_all(&files, args.force)?;
+    output::print(&format!("{summary}\n{} files in {}\n", files.len(), args.out.display()))?;
+    Ok(holds)
 }
 
 fn time(args: &TimeArgs) -> Outcome {
