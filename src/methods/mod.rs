@@ -251,7 +251,11 @@ impl<T: Real, M: Model<T>> Paper<'_, '_, T, M> {
             for moment in [bent.y(), bent.y() - h * bent.x()] {
                 change.moment = larger(change.moment, moment.abs());
             }
-            change.largest_moment = larger(change.largest_moment, element.largest_moment(e));
+            let motion = Motion::new(h, e, near);
+            let held = element.deforming_force(e) + Contact::at_points(linear).force(&motion, h).0;
+            for moment in [held.y(), held.y() - h * held.x()] {
+                change.largest_moment = larger(change.largest_moment, moment.abs());
+            }
             change.largest_force = larger(change.largest_force, element.fr.x().abs() / h);
             near = if M::Gap::PRESENT { far + element.gap.kink::<T>() } else { far };
 
@@ -271,7 +275,8 @@ impl<T: Real, M: Model<T>> Paper<'_, '_, T, M> {
                 force = force + part;
                 moment = moment + part * h * (T::one() - t);
             }
-            change.moment = larger(change.moment, moment.abs());
+            // Statics may lay it to either end, which makes it up to twice as much elsewhere.
+            change.moment = larger(change.moment, T::of(2.0) * moment.abs());
             if let Rule::BermudezMoreno(parameters) = &self.rule {
                 let multiplier = parameters.update(&sight, multiplier(&self.places[i]));
                 let [a, b, c, d] = multiplier.map_err(|fault| Halt::Law(i, fault))?;
