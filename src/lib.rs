@@ -74,6 +74,11 @@
 //! [`History`] solves scenes one after the other, each from the last solution, and visits only what changed.
 //! [`Prepared::tangent`] and [`Prepared::adjoint`] differentiate a solution.
 //!
+//! # The paper's own methods
+//!
+//! [`Prepared::solve_by`] solves by a [`Method`] of the paper, to compare with: what it ends at is held to the same
+//! residual.
+//!
 //! # Memory
 //!
 //! Nothing is allocated in a solve. [`Workspace`] holds a fixed number of elements where you put it;
@@ -88,6 +93,7 @@
 //! | `libm` | elementary functions without it: `--no-default-features --features libm` |
 //! | `alloc` | [`HeapWorkspace`], [`Solution::zones`] |
 //! | `cli` | the command line |
+//! | `parquet` | the command line's tables as Parquet files |
 //!
 //! # Guarantees and limits
 //!
@@ -123,6 +129,7 @@ mod error;
 mod history;
 mod law;
 mod mesh;
+mod methods;
 mod newton;
 mod problem;
 mod profile;
@@ -141,6 +148,7 @@ pub use error::{Error, Place};
 pub use history::History;
 pub use law::{Compliance, Law, Linear, Power, Tabulated, truncate, truncate_positive};
 pub use mesh::Mesh;
+pub use methods::{BermudezMoreno, Compared, Method};
 pub use newton::{Report, Settings, Status};
 pub use problem::{Prepared, Problem};
 pub use profile::{

@@ -163,10 +163,15 @@ impl<'s, T: Real, M: Model<T>> Prepared<'s, T, M> {
         Ok(Solution::new(self.scene, self.places.get(..elements).unwrap_or_default(), answer))
     }
 
-    pub(crate) fn run(&mut self, settings: &Settings<T>) -> Result<Answer<T, M>, Error> {
+    /// Forgets the last solve, and what it did to the law.
+    pub(crate) fn restore(&mut self) {
         if self.answer.take().is_some_and(|last| last.rigid) {
             nested::harden(self.scene, self.places, &self.levels);
         }
+    }
+
+    pub(crate) fn run(&mut self, settings: &Settings<T>) -> Result<Answer<T, M>, Error> {
+        self.restore();
         let answer = nested::solve(self.scene, self.places, &self.levels, settings)?;
         self.answer = Some(answer);
         Ok(answer)

@@ -258,3 +258,56 @@ fn extremes_make_a_document() {
     assert!(text.starts_with("# Extremes\n\n`cargo beam extremes --quick --format markdown"), "{text}");
     assert!(refusal(&folder, line).contains("--force"));
 }
+
+#[test]
+fn methods_of_the_paper_are_named_and_judged() {
+    let folder = folder();
+    for (method, elements, status) in [
+        ("newton", 96, "converged"),
+        ("gauss", 96, "own_equations"),
+        ("elementwise", 96, "foundation_pulls"),
+        ("bermudez-moreno", 96, "own_equations"),
+    ] {
+        let line =
+            format!("solve halves.toml --elements {elements} --method {method} --format json --samples 3");
+        let output = piezobeam(folder.path(), &line);
+        assert_eq!(output.status.code(), Some(i32::from(status != "converged")), "{method}");
+        let value: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        assert_eq!(value["status"], status, "{method}");
+        assert_eq!(value["method"]["name"], method);
+        assert_eq!(value["method"]["own_residual"].is_null(), method == "newton");
+        let middle = value["samples"]["bending"][1].as_f64().expect("a number");
+        assert!((middle + 0.0637).abs() < 1e-4, "{method}: {middle}");
+    }
+    let output = piezobeam(folder.path(), "solve halves.toml --elements 96 --method elementwise");
+    let said = text(&output.stdout);
+    assert!(
+        said.starts_with("NOT CONVERGED (foundation_pulls)") && said.contains("Try --method newton"),
+        "{said}"
+    );
+    assert!(refusal(&folder, "solve halves.toml --rho 0.5").contains("--method bermudez-moreno"));
+    let line = "solve halves.toml --method bermudez-moreno --omega 1e7 --mu 1e-7";
+    assert!(refusal(&folder, line).contains("at most 1 / (2 omega)"));
+}
+
+#[test]
+fn the_report_holds_and_shows_its_pictures() {
+    let folder = folder();
+    let output = piezobeam(folder.path(), "report --quick --out found");
+    assert_eq!(output.status.code(), Some(0), "{}{}", text(&output.stdout), text(&output.stderr));
+    let said = text(&output.stdout);
+    assert!(said.lines().filter(|line| line.starts_with("holds: ")).count() >= 4, "{said}");
+    assert!(!said.contains("FAILS"), "{said}");
+    let document = std::fs::read_to_string(folder.path().join("found/report.md")).expect("a document");
+    assert!(
+        document.starts_with("# Report\n\n`cargo beam report --quick`\n\n## The paper reproduced"),
+        "{document}"
+    );
+    let pictures: Vec<_> = document.lines().filter_map(|line| line.strip_prefix("![")).collect();
+    assert_eq!(pictures.len(), 8);
+    for picture in pictures {
+        let name = picture.split_once("](").and_then(|(_, rest)| rest.strip_suffix(')')).expect("a link");
+        assert!(folder.path().join("found").join(name).is_file(), "{name}");
+    }
+    assert!(refusal(&folder, "report --quick --out found").contains("--force"));
+}

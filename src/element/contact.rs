@@ -155,6 +155,16 @@ impl<T: Real> Contact<T> {
         Self::split(model, element, &motion.cubic(), q, scale, Tangent::Nondecreasing)
     }
 
+    /// From what each Gauss point of the whole element adds: the tangent stiffness, and the offset (tangent
+    /// stiffness . eta - force).
+    pub(crate) fn at_points(points: [(T, T); POINTS]) -> Self {
+        let mut contact = Self { touch: Touch::Mixed, ..Self::FREE() };
+        for ((t, weight), (tangent, offset)) in gauss::<POINTS>().into_iter().zip(points) {
+            contact.add(T::of(t), T::of(weight), tangent, offset);
+        }
+        contact
+    }
+
     #[inline(never)]
     fn split<M: Model<T>>(
         model: &M,

@@ -162,7 +162,7 @@ pub(crate) struct Count {
 
 impl Count {
     /// Counts visits, or says that they are over the cap.
-    fn spend(&mut self, visits: usize) -> Result<(), Halt> {
+    pub(crate) fn spend(&mut self, visits: usize) -> Result<(), Halt> {
         if visits > self.most_visits - self.visits {
             return Err(Halt::Budget);
         }
@@ -991,7 +991,7 @@ fn at<T: Real, M: Model<T>>(places: &mut [Place<T, M>], i: usize) -> Option<Neig
     Some((before.last(), rest.first_mut()?))
 }
 
-fn potential<T: Real, M: Model<T>>(
+pub(crate) fn potential<T: Real, M: Model<T>>(
     element: &Element<T, M>,
     work: &Work<T, M>,
     left: &Node<T, M>,

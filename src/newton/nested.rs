@@ -6,7 +6,7 @@
 //! mesh starts where the coarser one ended, and one to four iterations are left for it. The work is then a
 //! few sweeps over the finest mesh, whatever the stiffness.
 
-use super::{Context, Count, Halt, Level, Outcome, Report, Settings, Status};
+use super::{Context, Count, Halt, Level, Outcome, Report, Residual, Settings, Status};
 use crate::element::Element;
 use crate::element::hermite::Motion;
 use crate::law::Compliance;
@@ -148,7 +148,11 @@ pub(crate) struct Answer<T: Real, M: Model<T>> {
 }
 
 /// What the scene in `places` means for all meshes.
-fn context<'a, T: Real, M: Model<T>>(model: &'a M, places: &[Place<T, M>], stop: T) -> Context<'a, T, M> {
+pub(crate) fn context<'a, T: Real, M: Model<T>>(
+    model: &'a M,
+    places: &[Place<T, M>],
+    stop: T,
+) -> Context<'a, T, M> {
     let length = model.length();
     let half = T::of(0.5);
     let (first, last) = match (places.first(), places.last()) {
@@ -189,6 +193,17 @@ pub(crate) fn budget<T: Real>(settings: &Settings<T>, elements: usize) -> Count 
     Count { iterations: 0, visits: 0, most_visits }
 }
 
+/// Is no more than rounding left?
+pub(crate) fn is_rounding<T: Real>(residual: &Residual<T>) -> bool {
+    residual.relative() <= T::of(FLOOR) * residual.floor()
+}
+
+/// The first element that is beyond the number format: moments may balance where displacements or fluxes are.
+pub(crate) fn overflown<T: Real, M: Model<T>>(places: &[Place<T, M>], state: usize) -> Option<usize> {
+    let ratio = electric::Ratio::of(&places.first()?.element);
+    places.iter().position(|place| !place.is_finite(state, &ratio))
+}
+
 impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
     /// The answer on the finest mesh, where an iteration ended so.
     fn answer(mut self, outcome: Result<Outcome, Halt>, stop: T, count: &Count) -> Answer<T, M> {
@@ -206,20 +221,13 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
                 Status::Converged
             }
             // However the iteration ended, what is left tells which it is.
-            Ok(_) if self.best.is_some_and(|(_, best)| best.relative() <= T::of(FLOOR) * best.floor()) => {
-                Status::ToleranceBelowFloor
-            }
+            Ok(_) if self.best.is_some_and(|(_, best)| is_rounding(&best)) => Status::ToleranceBelowFloor,
             Ok(_) => Status::Stagnation,
         };
-        // Moments may balance where displacements or fluxes are beyond the number format.
-        let ratio = self.places.first().map(|place| electric::Ratio::of(&place.element));
-        // And where all moments are below it nothing was balanced.
+        // Where all moments are below the number format nothing was balanced.
         let weightless = self.best.is_some_and(|(_, best)| best.size == T::zero());
-        let beyond = |p: &Place<T, M>| {
-            ratio.is_some_and(|ratio| !p.is_finite(self.current, &ratio))
-                || (weightless && p.is_bent(self.current))
-        };
-        let status = match self.places.iter().position(beyond) {
+        let bent = || self.places.iter().position(|place| weightless && place.is_bent(self.current));
+        let status = match overflown(self.places, self.current).or_else(bent) {
             Some(element) if status == Status::Converged => Status::Breakdown { element },
             _ => status,
         };

@@ -60,6 +60,19 @@ pub enum Status {
     },
     /// The residual is as small as rounding lets it become for this scene, but above `stop`.
     ToleranceBelowFloor,
+    /// Only of a [`Method`](crate::Method): it settled on a contact set under which the foundation pulls the beam.
+    FoundationPulls {
+        /// Element where it pulls most.
+        element: usize,
+    },
+    /// Only of a [`Method`](crate::Method): its iteration goes in circles.
+    Cycle {
+        /// Iterations until the same state comes back.
+        period: usize,
+    },
+    /// Only of a [`Method`](crate::Method): its own equations are solved, but with the law integrated up to the
+    /// contact's edges the residual is above `stop`.
+    OwnEquations,
 }
 
 impl Status {
@@ -74,6 +87,9 @@ impl Status {
             Self::LawNotFinite { .. } => "law_not_finite",
             Self::LawNotMonotone { .. } => "law_not_monotone",
             Self::ToleranceBelowFloor => "tolerance_below_floor",
+            Self::FoundationPulls { .. } => "foundation_pulls",
+            Self::Cycle { .. } => "cycle",
+            Self::OwnEquations => "own_equations",
         }
     }
 }
@@ -109,6 +125,22 @@ impl fmt::Display for Status {
                 f,
                 "the residual is at the rounding floor of this scene, above the tolerance; ask for a \
                  larger stop"
+            ),
+            Self::FoundationPulls { element } => write!(
+                f,
+                "the iteration settled on a contact set under which the foundation pulls the beam, most in element \
+                 {element}: what looks converged is no equilibrium"
+            ),
+            Self::Cycle { period } => {
+                write!(
+                    f,
+                    "the iteration goes in circles: every {period} iterations the same state comes back"
+                )
+            }
+            Self::OwnEquations => write!(
+                f,
+                "the method solved its own equations, which integrate the contact across its edges; with the law \
+                 itself the residual is above the tolerance"
             ),
         }
     }

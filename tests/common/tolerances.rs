@@ -142,3 +142,15 @@ pub const REFERENCE: f64 = 1e-6;
 pub const HONEST: f64 = 1e-4;
 /// ... or so many residuals of the solve, or estimates of its rounding.
 pub const HONEST_RESIDUALS: f64 = 1e3;
+
+/// The order of methods that integrate the contact across its edge, by a line through the errors on six meshes: two,
+/// up and down with where the edge lies in its element.
+pub const ORDER_ACROSS_KINKS: std::ops::Range<f64> = 1.5..2.8;
+/// Bending of two methods with the same equations, each with a residual up to 1e-10.
+pub const METHODS: f64 = 1e-8;
+/// The same on random scenes, whose moments may bend the beam but little.
+pub const METHODS_RANDOM: f64 = 1e-6;
+/// Bending of methods that integrate the contact across its edge, on 200 elements.
+pub const ACROSS_KINKS: f64 = 1e-4;
+/// Iterations of Bermúdez and Moreno's algorithm over those of its rate: what the start is off by is beside it.
+pub const DUAL_ITERATIONS: std::ops::Range<f64> = 0.5..1.5;

@@ -4,6 +4,7 @@
 #![allow(clippy::expect_used, reason = "renderers draw into memory, which cannot fail; each place says why")]
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::panic, reason = "a test that panics has failed"))]
 
+mod chapters;
 mod cli;
 mod extremes;
 mod model;
@@ -14,10 +15,12 @@ mod render;
 mod report;
 mod scene_file;
 mod sensitivities;
+mod sweep;
 mod tasks;
 
 use cli::{
-    CheckArgs, Cli, Command, ExtremesArgs, Format, PaperArgs, SolveArgs, TableFormat, TimeArgs, TimeFormat,
+    CheckArgs, Cli, Command, ExtremesArgs, Format, PaperArgs, ReportArgs, SolveArgs, SweepArgs, TableFormat,
+    TimeArgs, TimeFormat,
 };
 use indicatif::{ProgressBar, ProgressStyle};
 use report::{Checked, Picture};
@@ -41,7 +44,9 @@ fn main() -> ExitCode {
     let outcome = match Cli::read().command {
         Command::Solve(args) => solve(&args),
         Command::Check(args) => check(&args),
+        Command::Sweep(args) => sweep(&args),
         Command::Paper(args) => paper(&args),
+        Command::Report(args) => report(&args),
         Command::Time(args) => time(&args),
         Command::Extremes(args) => extremes(&args),
     };
@@ -61,8 +66,8 @@ fn solve(args: &SolveArgs) -> Outcome {
     }
     let file = scene_file::read(&args.scene)?;
     let run = |samples| {
-        let SolveArgs { stop, tolerance, sensitivities, .. } = *args;
-        let task = tasks::Solve { stop, tolerance, samples, sensitivities };
+        let SolveArgs { stop, tolerance, sensitivities, ref method, .. } = *args;
+        let task = tasks::Solve { stop, tolerance, samples, sensitivities, method: method.clone() };
         let elements = args.elements.or(tolerance.map(|_| FIRST_ELEMENTS));
         model::with(&file, elements, args.precision, task).map_err(|e| file.complaint(&e))
     };
@@ -109,6 +114,31 @@ fn check(args: &CheckArgs) -> Outcome {
     Ok(true)
 }
 
+fn sweep(args: &SweepArgs) -> Outcome {
+    for path in args.out.iter().chain(&args.plot) {
+        output::check(path, args.force)?;
+    }
+    let table = sweep::run(args, &progress(0, "scenes"))?;
+    let mut files: Vec<(PathBuf, Vec<u8>)> = Vec::new();
+    if let Some(plot) = &args.plot {
+        let name = args.scene.to_string_lossy();
+        files.push((plot.clone(), render::sweep::plot(&table, &name).into_bytes()));
+    }
+    match &args.out {
+        #[cfg(feature = "parquet")]
+        Some(path) if args.is_parquet() => files.push((path.clone(), sweep::parquet::bytes(&table)?)),
+        Some(path) => files.push((path.clone(), table.csv().into_bytes())),
+        None => output::print(&table.csv())?,
+    }
+    output::write_all(&files, args.force)?;
+    let (failed, scenes) = (table.failed(), table.len());
+    table.finish();
+    if failed > 0 {
+        eprintln!("piezobeam: {failed} of {scenes} scenes did not converge; the column status says why");
+    }
+    Ok(failed == 0)
+}
+
 fn paper(args: &PaperArgs) -> Outcome {
     let paper::Paper { table, files, converged } = paper::run(&args.out)?;
     for (path, _) in &files {
@@ -120,13 +150,21 @@ fn paper(args: &PaperArgs) -> Outcome {
     Ok(converged)
 }
 
+fn report(args: &ReportArgs) -> Outcome {
+    let chapters::Document { files, summary, holds } = chapters::run(args.quick, &args.out)?;
+    for (path, _) in &files {
+        output::check(path, args.force)?;
+        output::make_directory(path.parent().unwrap_or(&args.out))?;
+    }
+    output::write_all(&files, args.force)?;
+    output::print(&format!("{summary}\n{} files in {}\n", files.len(), args.out.display()))?;
+    Ok(holds)
+}
+
 fn time(args: &TimeArgs) -> Outcome {
     let file = scene_file::read(&args.scene)?;
-    // On a terminal only, and drawn a few times a second at most: the solves are timed one by one.
-    let bar = ProgressBar::new(args.repeat as u64);
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} solves, {eta} left") {
-        bar.set_style(style);
-    }
+    // Drawn a few times a second at most: the solves are timed one by one.
+    let bar = progress(args.repeat as u64, "solves");
     let task = tasks::Time { repeat: args.repeat, progress: &|| bar.inc(1) };
     let timing = model::with(&file, args.elements, args.precision, task).map_err(|e| file.complaint(&e))?;
     bar.finish_and_clear();
@@ -157,12 +195,23 @@ fn extremes(args: &ExtremesArgs) -> Outcome {
     Ok(table.wrong == 0)
 }
 
+/// How far it is, on a terminal only.
+fn progress(length: u64, what: &str) -> ProgressBar {
+    let bar = ProgressBar::new(length);
+    if let Ok(style) =
+        ProgressStyle::with_template(&format!("{{bar:40}} {{pos}}/{{len}} {what}, {{eta}} left"))
+    {
+        bar.set_style(style);
+    }
+    bar
+}
+
 fn picture(file: &SceneFile, solved: tasks::Solved) -> Picture {
     Picture {
         title: scene_file::printable(&file.name),
         length: file.length,
         gap: solved.gap,
-        facts: Vec::new(),
+        facts: file.facts(),
         report: solved.report,
     }
 }

@@ -80,13 +80,13 @@ pub fn check(path: &Path, force: bool) -> Result<(), OutputError> {
 /// Writes all files or, where one is refused or a disk is full, none of them.
 ///
 /// With `force` an error between two renames can leave some files replaced and others not; each is still whole.
-pub fn write_all<P: AsRef<Path>>(files: &[(P, String)], force: bool) -> Result<(), OutputError> {
+pub fn write_all<P: AsRef<Path>, C: AsRef<[u8]>>(files: &[(P, C)], force: bool) -> Result<(), OutputError> {
     let mut staged = Vec::with_capacity(files.len());
-    for (path, text) in files {
+    for (path, content) in files {
         let path = path.as_ref();
         let target = target(path, force)?;
         let error = |e| OutputError::Write(path.to_owned(), e);
-        staged.push((path, stage(target, text).map_err(error)?));
+        staged.push((path, stage(target, content.as_ref()).map_err(error)?));
     }
     let mut made = Vec::new();
     for (path, staged) in staged {
@@ -170,13 +170,13 @@ fn target(path: &Path, force: bool) -> Result<Target, OutputError> {
 /// Content on its way to a path.
 enum Staged<'a> {
     File(NamedTempFile, PathBuf),
-    Device(PathBuf, &'a str),
+    Device(PathBuf, &'a [u8]),
 }
 
-fn stage(target: Target, text: &str) -> io::Result<Staged<'_>> {
+fn stage(target: Target, content: &[u8]) -> io::Result<Staged<'_>> {
     let path = match target {
         Target::File(path) => path,
-        Target::Device(path) => return Ok(Staged::Device(path, text)),
+        Target::Device(path) => return Ok(Staged::Device(path, content)),
     };
     let mut builder = Builder::new();
     builder.prefix(".piezobeam-");
@@ -187,7 +187,7 @@ fn stage(target: Target, text: &str) -> io::Result<Staged<'_>> {
         builder.permissions(fs::Permissions::from_mode(0o666))
     };
     let mut file = builder.tempfile_in(directory_of(&path))?;
-    file.write_all(text.as_bytes())?;
+    file.write_all(content)?;
     if let Ok(old) = fs::metadata(&path) {
         file.as_file().set_permissions(old.permissions())?;
     }
@@ -199,9 +199,9 @@ impl Staged<'_> {
     fn commit(self, shown: &Path, force: bool) -> Result<(), OutputError> {
         let error = |e| OutputError::Write(shown.to_owned(), e);
         match self {
-            Self::Device(path, text) => {
+            Self::Device(path, content) => {
                 let mut device = File::options().write(true).open(path).map_err(error)?;
-                device.write_all(text.as_bytes()).map_err(error)
+                device.write_all(content).map_err(error)
             }
             Self::File(file, path) if force => file.persist(path).map(drop).map_err(|e| error(e.error)),
             Self::File(file, path) => match file.persist_noclobber(path) {
@@ -241,7 +241,7 @@ mod tests {
     fn a_file_that_appears_meanwhile_is_kept() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("a");
-        let staged = stage(Target::File(path.clone()), "mine").unwrap();
+        let staged = stage(Target::File(path.clone()), b"mine").unwrap();
         fs::write(&path, "theirs").unwrap();
         assert!(matches!(staged.commit(&path, false), Err(OutputError::Exists(_))));
         assert_eq!(fs::read_to_string(&path).unwrap(), "theirs");

@@ -1,7 +1,7 @@
 //! The paper's scene and its variant with partial contact: a short table and the four field pictures of its
 //! Figs. 1-4.
 
-use crate::cli::Precision;
+use crate::cli::{MethodArgs, Precision};
 use crate::render::{figures, quantity};
 use crate::report::{CONVERGED, Picture};
 use crate::{PICTURE_SAMPLES, model, picture, scene_file, tasks};
@@ -42,8 +42,13 @@ pub fn run(out: &Path) -> Result<Paper, Box<dyn std::error::Error>> {
     let mut notes = String::new();
     for (name, what, text) in SCENES {
         let file = scene_file::parse(text, &format!("{name}.toml"))?;
-        let task =
-            tasks::Solve { stop: None, tolerance: None, samples: PICTURE_SAMPLES, sensitivities: false };
+        let task = tasks::Solve {
+            stop: None,
+            tolerance: None,
+            samples: PICTURE_SAMPLES,
+            sensitivities: false,
+            method: MethodArgs::default(),
+        };
         let solved = model::with(&file, None, Precision::F64, task).map_err(|e| file.complaint(&e))?;
         let mut page = picture(&file, solved);
         page.title = format!("{name}: {what}");

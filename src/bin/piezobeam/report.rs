@@ -44,6 +44,7 @@ pub struct Report {
     pub resultants: Resultants,
     /// Floating-point type of the solve: `f64` or `f32`.
     pub precision: String,
+    pub method: Method,
     /// `None` where they were not asked for.
     pub sensitivities: Option<Sensitivities>,
 }
@@ -59,6 +60,19 @@ pub struct Adaptive {
     pub meaning: String,
     /// Meshes solved on.
     pub passes: usize,
+}
+
+/// How it was solved; numbers are there for the paper's own methods only, by their own reckoning.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Method {
+    /// As on the command line.
+    pub name: &'static str,
+    /// Last relative change of moments and contact forces.
+    pub own_residual: Option<f64>,
+    /// N/m; negative where the foundation pulls.
+    pub lowest_pressure: Option<f64>,
+    /// N/m
+    pub highest_pressure: Option<f64>,
 }
 
 /// Derivatives of outputs to the parameters of the scene.

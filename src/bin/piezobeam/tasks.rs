@@ -1,12 +1,13 @@
 //! What the commands do with a scene: solve it, check it, time it.
 
+use crate::cli::MethodArgs;
 use crate::model::Task;
 use crate::report::{
-    Adaptive, CERTIFIED, Contact, Reaction, Report, Resultants, Samples, Timing, Uniqueness,
+    Adaptive, CERTIFIED, Contact, Method, Reaction, Report, Resultants, Samples, Timing, Uniqueness,
 };
 use crate::sensitivities;
 use piezobeam::{
-    Error, Fields, HeapWorkspace, Mesh, Model, Problem, Reached, Real, Settings, Solution, Status,
+    Error, Fields, HeapWorkspace, Mesh, Model, Prepared, Problem, Reached, Real, Settings, Solution, Status,
 };
 use std::time::Instant;
 
@@ -28,47 +29,28 @@ pub struct Solve {
     pub tolerance: Option<f64>,
     pub samples: usize,
     pub sensitivities: bool,
+    pub method: MethodArgs,
 }
 
 impl Task for Solve {
     type Output = Solved;
     fn run<T: Real, M: Model<T>>(self, problem: Problem<'_, T, M>) -> Result<Solved, Error> {
         let settings = settings::<T>(self.stop);
-        let (mut memory, mut nodes) = (HeapWorkspace::new(), Vec::new());
-        let mut solved = if let Some(tolerance) = self.tolerance {
-            let mut asked = tolerance;
-            loop {
-                let found = problem.solve_to(&mut memory, T::of(asked), &settings)?;
-                let mut solved = self.solved(&found.solution, &settings)?;
-                // The certificate knows the error better than the meshes do.
-                let missed = solved.report.error_estimate.is_some_and(|error| error > tolerance);
-                if missed && found.reached == Reached::Tolerance && asked > STRICTEST * tolerance {
-                    asked *= STRICTER;
-                    continue;
-                }
-                let reached = if missed && found.reached == Reached::Tolerance {
-                    Reached::Capacity
-                } else {
-                    found.reached
-                };
-                solved.report.adaptive = Some(Adaptive {
-                    tolerance,
-                    reached: reached.name().into(),
-                    meaning: reached.to_string(),
-                    passes: found.passes,
-                });
-                if self.sensitivities {
-                    nodes.extend(found.solution.nodes());
-                }
-                break solved;
+        let mut memory = HeapWorkspace::new();
+        let Some(tolerance) = self.tolerance else {
+            let mut prepared = problem.prepare(&mut memory)?;
+            let method = solve_by(&self.method, &mut prepared, self.stop)?;
+            let mut solved = self.solved(&prepared.last().ok_or(NOTHING)?, &settings)?;
+            solved.report.method = method;
+            if self.sensitivities {
+                solved.report.sensitivities = Some(sensitivities::of(&mut prepared));
             }
-        } else {
-            self.solved(&problem.solve(&mut memory, &settings)?, &settings)?
+            return Ok(solved);
         };
+        let (mut solved, nodes) = self.adapted(&problem, &mut memory, tolerance, &settings)?;
         if self.sensitivities {
             // On the mesh that was made.
-            let problem = if nodes.is_empty() { problem } else { problem.on(Mesh::Nodes(&nodes))? };
-            let mut memory = HeapWorkspace::new();
+            let problem = problem.on(Mesh::Nodes(&nodes))?;
             let mut prepared = problem.prepare(&mut memory)?;
             prepared.solve(&settings)?;
             solved.report.sensitivities = Some(sensitivities::of(&mut prepared));
@@ -78,6 +60,37 @@ impl Task for Solve {
 }
 
 impl Solve {
+    /// The report of a solution on a mesh made for `tolerance`, and the mesh's nodes.
+    fn adapted<T: Real, M: Model<T>>(
+        &self,
+        problem: &Problem<'_, T, M>,
+        memory: &mut HeapWorkspace<T, M>,
+        tolerance: f64,
+        settings: &Settings<T>,
+    ) -> Result<(Solved, Vec<T>), Error> {
+        let mut asked = tolerance;
+        loop {
+            let found = problem.solve_to(memory, T::of(asked), settings)?;
+            let mut solved = self.solved(&found.solution, settings)?;
+            // The certificate knows the error better than the meshes do.
+            let missed = found.reached == Reached::Tolerance
+                && solved.report.error_estimate.is_some_and(|error| error > tolerance);
+            if missed && asked > STRICTEST * tolerance {
+                asked *= STRICTER;
+                continue;
+            }
+            let reached = if missed { Reached::Capacity } else { found.reached };
+            solved.report.adaptive = Some(Adaptive {
+                tolerance,
+                reached: reached.name().into(),
+                meaning: reached.to_string(),
+                passes: found.passes,
+            });
+            solved.report.method.name = self.method.method.name();
+            return Ok((solved, found.solution.nodes().collect()));
+        }
+    }
+
     /// The report of a solution, with what is known of its error.
     fn solved<T: Real, M: Model<T>>(
         &self,
@@ -150,6 +163,30 @@ impl Task for Time<'_> {
     }
 }
 
+/// There is a solution after every solve.
+const NOTHING: Error = Error::Missing { field: "mesh", needed_by: "the solve" };
+
+/// Solves by the method that was asked for, and gives what there is to say of that.
+pub fn solve_by<T: Real, M: Model<T>>(
+    method: &MethodArgs,
+    prepared: &mut Prepared<'_, T, M>,
+    stop: Option<f64>,
+) -> Result<Method, Error> {
+    let settings = settings::<T>(stop);
+    let name = method.method.name();
+    let Some(method) = method.method::<T>() else {
+        prepared.solve(&settings)?;
+        return Ok(Method { name, ..Method::default() });
+    };
+    let found = prepared.solve_by(&method, &settings)?;
+    Ok(Method {
+        name,
+        own_residual: Some(found.own_residual.f64()),
+        lowest_pressure: Some(found.lowest_pressure.f64()),
+        highest_pressure: Some(found.highest_pressure.f64()),
+    })
+}
+
 fn settings<T: Real>(stop: Option<f64>) -> Settings<T> {
     let default = Settings::default();
     Settings { stop: stop.map_or(default.stop, T::of), ..default }
@@ -218,6 +255,7 @@ fn solved<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>, samples: usize) -
             equilibrium_error: found.equilibrium_error.f64(),
         },
         precision: core::any::type_name::<T>().into(),
+        method: Method::default(),
         sensitivities: None,
     };
     Solved { report, gap }

@@ -6,16 +6,14 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
 use super::chart::{
-    Area, BLUE, Chart, Drawn, FAINT, FINE, Frame, INK, ORANGE, curve, mark, padded, style, thinned,
+    Area, BLUE, Chart, Drawn, FAINT, FINE, Frame, GROUND, INK, ORANGE, SURFACE, WALL, curve, mark, padded,
+    style, thinned,
 };
 use super::{Scale, telling};
 use crate::report::Picture;
 
-const GROUND: RGBColor = RGBColor(226, 220, 207);
-const SURFACE: RGBColor = RGBColor(122, 106, 79);
-
 /// Width of a wall relative to the length of the beam.
-const WALL: f64 = 0.045;
+const WIDE: f64 = 0.045;
 
 /// Foundation drawn at most this many times deeper than the beam bends, or the beam would look straight.
 const DEEPEST: f64 = 2.5;
@@ -58,16 +56,19 @@ pub fn panel(area: &Area, picture: &Picture) -> Drawn {
         title: &title,
         note: String::new(),
         colour: Some(BLUE),
-        x: -WALL * length..(1.0 + WALL) * length,
+        x: -WIDE * length..(1.0 + WIDE) * length,
         y: y.clone(),
         x_label: &x_label,
         downwards: true,
+        logarithmic: false,
     };
     let scales = frame.magnified(area, &along, &across);
     frame.note = match (gap.is_some(), cut) {
         (_, true) => format!("The foundation lies below the lower edge in places. {scales}"),
-        (true, false) => format!("Orange: the beam presses the foundation. {scales}"),
-        (false, false) => format!("No foundation. {scales}"),
+        (true, false) => {
+            format!("Orange: the beam presses the foundation. Dashed: the beam at rest. {scales}")
+        }
+        (false, false) => format!("No foundation. Dashed: the beam at rest. {scales}"),
     };
     let mut chart = frame.draw(area)?;
 
@@ -131,10 +132,10 @@ pub fn walls(chart: &Chart) -> Drawn {
     let area = chart.plotting_area().strip_coord_spec();
     let (width, height) = area.dim_in_pixel();
     let (width, height) = (width as i32, height as i32);
-    let wall = (f64::from(width) * WALL / (1.0 + 2.0 * WALL)).round() as i32;
+    let wall = (f64::from(width) * WIDE / (1.0 + 2.0 * WIDE)).round() as i32;
     for (from, edge) in [(0, wall), (width - wall, width - wall)] {
         let box_ = [(from, 0), (from + wall, height)];
-        area.draw(&Rectangle::new(box_, RGBColor(238, 238, 238).filled()))?;
+        area.draw(&Rectangle::new(box_, WALL.filled()))?;
         for c in (0..height + wall).step_by(8 * FINE as usize) {
             // The line x + y = c, cut to the box.
             let (start, end) = ((c - height).max(0), c.min(wall));

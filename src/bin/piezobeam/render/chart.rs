@@ -25,10 +25,43 @@ pub const GREEN: RGBColor = RGBColor(0, 158, 115);
 pub const VERMILLION: RGBColor = RGBColor(213, 94, 0);
 pub const PURPLE: RGBColor = RGBColor(204, 121, 167);
 pub const ORANGE: RGBColor = RGBColor(230, 159, 0);
+/// The foundation and its surface.
+pub const GROUND: RGBColor = RGBColor(226, 220, 207);
+pub const SURFACE: RGBColor = RGBColor(122, 106, 79);
+/// Walls behind their hatching.
+pub const WALL: RGBColor = RGBColor(238, 238, 238);
+/// A beam drawn as a band.
+pub const BAND: RGBColor = RGBColor(170, 209, 233);
+pub const SKY: RGBColor = RGBColor(86, 180, 233);
 
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 pub type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 pub type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
+
+/// What each colour is on a dark page: as light against it as it is dark against white, of the same hue.
+const DARK: [(RGBColor, &str); 12] = [
+    (WHITE, "#16191d"),
+    (INK, "#ececec"),
+    (FAINT, "#a9b0b8"),
+    (GRID, "#343a41"),
+    (WALL, "#24282d"),
+    (GROUND, "#39342b"),
+    (SURFACE, "#b5a27e"),
+    (BLUE, "#5cb3ee"),
+    (GREEN, "#3fc79d"),
+    (VERMILLION, "#f58b45"),
+    (PURPLE, "#dd9cc2"),
+    (BAND, "#2f6388"),
+];
+
+/// The style rules with which a page is dark where the reader's screen is.
+fn dark() -> String {
+    let rules = DARK.map(|(RGBColor(r, g, b), dark)| {
+        let light = format!("#{r:02X}{g:02X}{b:02X}");
+        format!("[fill=\"{light}\"] {{ fill: {dark} }} [stroke=\"{light}\"] {{ stroke: {dark} }}\n")
+    });
+    format!("@media (prefers-color-scheme: dark) {{\ntext {{ stroke: #16191d }}\n{}}}\n", rules.concat())
+}
 
 /// A white page of `width` by `height` pixels; `name` is its title for browsers and screen readers, plain words.
 pub fn page(name: &'static str, width: i32, height: i32, draw: impl FnOnce(&Area) -> Drawn) -> String {
@@ -42,11 +75,12 @@ pub fn page(name: &'static str, width: i32, height: i32, draw: impl FnOnce(&Area
     drop(root);
     let drawn = format!("width=\"{}\" height=\"{}\"", size.0, size.1);
     let shown = format!("width=\"{width}\" height=\"{height}\" role=\"img\"");
-    // Text carries a white outline, so that a label crossed by a line stays readable.
+    // Text carries an outline of the page's colour, so that a label crossed by a line stays readable.
     let style = format!(
         "<title>{name}</title>\n<style>text {{ paint-order: stroke; stroke: #fff; stroke-width: {}px; \
-         stroke-linejoin: round }} polyline {{ stroke-linejoin: round }}</style>\n",
-        3 * FINE
+         stroke-linejoin: round }} polyline {{ stroke-linejoin: round }}\n{}</style>\n",
+        3 * FINE,
+        dark()
     );
     let svg = svg.replacen(&drawn, &shown, 1);
     match svg.split_once('\n') {
@@ -89,6 +123,41 @@ pub fn shortened(text: &str, most: usize) -> String {
     }
 }
 
+/// `text` in lines of at most `width` characters, broken between words; a longer word stays whole.
+pub fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split_whitespace() {
+        let line = lines.len() - 1;
+        let used = lines[line].chars().count();
+        if used == 0 {
+            lines[line] += word;
+        } else if used + 1 + word.chars().count() <= width {
+            lines[line] = format!("{} {word}", lines[line]);
+        } else {
+            lines.push(word.to_owned());
+        }
+    }
+    lines
+}
+
+/// `text` as it is printed: minus signs, and small whole powers raised.
+pub fn typeset(text: &str) -> String {
+    let minus = text.replace(" -", " −").replace("e-", "e−").replace("[-", "[−");
+    let minus = minus.strip_prefix('-').map_or(minus.clone(), |rest| format!("−{rest}"));
+    let mut out = String::new();
+    let mut parts = minus.split('^');
+    out += parts.next().unwrap_or_default();
+    for part in parts {
+        let alone = !part[1.min(part.len())..].starts_with(|c: char| c.is_ascii_digit() || c == '.');
+        match part.chars().next().filter(|_| alone) {
+            Some('2') => out = out + "²" + &part[1..],
+            Some('3') => out = out + "³" + &part[1..],
+            _ => out = out + "^" + part,
+        }
+    }
+    out
+}
+
 /// Axes and a title above them; `colour` draws a sample of the line the title names.
 pub struct Frame<'a> {
     pub title: &'a str,
@@ -100,6 +169,8 @@ pub struct Frame<'a> {
     pub x_label: &'a str,
     /// Print the ordinates with their sign changed: for an axis that counts downwards.
     pub downwards: bool,
+    /// Abscissas are logarithms to the base ten; print the numbers themselves.
+    pub logarithmic: bool,
 }
 
 /// Room around the plotting area, pixels.
@@ -159,7 +230,7 @@ impl Frame<'_> {
             .label_style(label(12, INK))
             .axis_desc_style(label(12, INK))
             .x_desc(self.x_label)
-            .x_label_formatter(&|&v| tick(v, dx))
+            .x_label_formatter(&|&v| if self.logarithmic { power(v) } else { tick(v, dx) })
             .y_label_formatter(&|&v| tick(sign * v, dy))
             .draw()?;
         Ok(chart)
@@ -170,6 +241,15 @@ impl Frame<'_> {
 fn tick(value: f64, span: f64) -> String {
     let value = if value.abs() < 1e-9 * span { 0.0 } else { value };
     significant(value, 6).replace('-', "−")
+}
+
+/// A tick's number on a logarithmic axis.
+fn power(exponent: f64) -> String {
+    let whole = exponent.round();
+    if (exponent - whole).abs() < 1e-9 {
+        return format!("1e{whole:.0}").replace('-', "−");
+    }
+    significant(10f64.powf(exponent), 2).replace('-', "−")
 }
 
 /// The range of `values` with `below` and `above` parts of its span added; never so narrow that ticks run out of digits.
@@ -268,6 +348,27 @@ mod tests {
         assert_eq!(root.attribute("width"), Some("200"));
         assert_eq!(root.attribute("viewBox"), Some("0 0 2000 1000"));
         assert!(xml.descendants().any(|n| n.text().is_some_and(|t| t.trim() == "<a> &")));
+    }
+
+    #[test]
+    fn every_colour_has_one_for_dark_pages() {
+        let svg = page("test", 20, 10, |_| Ok(()));
+        let (_, rules) = svg.split_once("prefers-color-scheme: dark").unwrap();
+        for (RGBColor(r, g, b), dark) in DARK {
+            assert!(rules.contains(&format!("[fill=\"#{r:02X}{g:02X}{b:02X}\"] {{ fill: {dark} }}")));
+        }
+        // The backend writes colours as the rules have them.
+        assert!(svg.contains("fill=\"#FFFFFF\""), "{svg}");
+    }
+
+    #[test]
+    fn lines_and_signs() {
+        assert_eq!(wrapped("one two  three", 7), ["one two", "three"]);
+        assert_eq!(wrapped("unbreakable a", 4), ["unbreakable", "a"]);
+        assert_eq!(wrapped("", 4), [""]);
+        assert_eq!(typeset("-1e-5 N m^2/V^2"), "−1e−5 N m²/V²");
+        assert_eq!(typeset("1e8 N/m^2.5, -2 x^10 + x^3"), "1e8 N/m^2.5, −2 x^10 + x³");
+        assert_eq!(typeset("x^"), "x^");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use plotters::prelude::*;
 
-use super::chart::{Area, BLUE, Drawn, FAINT, FINE, Frame, VERMILLION, curve, padded, page};
+use super::chart::{Area, BAND, BLUE, Drawn, FAINT, FINE, Frame, VERMILLION, curve, padded, page};
 use super::{Scale, beam, fields, overview};
 use crate::report::Picture;
 
@@ -72,6 +72,7 @@ fn draw_deformed(root: &Area, picture: &Picture) -> Drawn {
         y,
         x_label: &x_label,
         downwards: false,
+        logarithmic: false,
     };
     let scales = frame.magnified(root, &along, &across);
     frame.note = match folded {
@@ -88,7 +89,7 @@ fn draw_deformed(root: &Area, picture: &Picture) -> Drawn {
     let step = n.div_ceil(POINTS).max(1);
     let last = points.last().copied();
     let even: Vec<_> = points.iter().copied().step_by(step).chain(last).collect();
-    curve(&mut chart, &even, RGBColor(170, 209, 233), 12)?;
+    curve(&mut chart, &even, BAND, 12)?;
     let eighths: Vec<_> = (0..=8)
         .map(|eighth| eighth * n.saturating_sub(1) / 8)
         .filter_map(|i| Some(((samples.x.get(i)? * along.factor, 0.0), *points.get(i)?)))

@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use crate::report::{
-    CONVERGED, Contact, Output, Parameter, Picture, Reaction, Report, Resultants, Samples, Sensitivities,
-    Uniqueness,
+    CONVERGED, Contact, Method, Output, Parameter, Picture, Reaction, Report, Resultants, Samples,
+    Sensitivities, Uniqueness,
 };
 
 const POINTS: usize = 129;
@@ -45,6 +45,7 @@ fn base(title: &str, length: f64, bending: impl Fn(f64) -> f64) -> Picture {
             uniqueness: Uniqueness { certified: true, ..Uniqueness::default() },
             resultants: Resultants::default(),
             precision: "f64".into(),
+            method: Method { name: "newton", ..Method::default() },
             sensitivities: None,
         },
         title: title.into(),

@@ -106,6 +106,9 @@ mod tests {
                 "bending_energy",
                 "equilibrium_error",
                 "precision",
+                "method",
+                "name",
+                "lowest_pressure",
                 "sensitivities",
             ],
         );

@@ -11,6 +11,7 @@ pub mod figures;
 pub mod fixture;
 pub mod json;
 pub mod overview;
+pub mod sweep;
 pub mod text;
 
 use crate::report::Samples;
@@ -118,6 +119,11 @@ impl Scale {
     pub fn show(&self, value: f64, digits: usize) -> String {
         format!("{} {}", significant(value * self.factor, digits), self.unit)
     }
+}
+
+/// A number of things.
+fn counted(n: usize, noun: &str) -> String {
+    format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
 }
 
 /// `value` (SI) with a prefix of its own.

@@ -4,16 +4,21 @@ use plotters::prelude::*;
 
 use super::chart::{
     Area, BLUE, Drawn, FAINT, FINE, Frame, GREEN, INK, ORANGE, PURPLE, VERMILLION, curve, heading, mark,
-    padded, page, shortened, words,
+    padded, page, shortened, typeset, words, wrapped,
 };
-use super::{Field, Scale, beam, extremes, fields, quantity, significant, telling, text, zones};
+use super::{Field, Scale, beam, counted, extremes, fields, quantity, significant, telling, text, zones};
 use crate::report::{Picture, Report};
 
 const WIDTH: i32 = 960;
-const HEAD: i32 = 68;
+const HEAD: i32 = 42;
+const KEYS: i32 = 58;
 const BEAM: i32 = 360;
 const ROW: i32 = 220;
 const LINE: i32 = 20;
+/// Characters of a line over the whole page.
+const WORDS: usize = 118;
+/// Warnings shown.
+const WARNINGS: usize = 4;
 
 /// The page as SVG.
 pub fn solve(picture: &Picture) -> String {
@@ -24,13 +29,26 @@ pub fn solve(picture: &Picture) -> String {
         .collect();
     let rows = drawn.chunks(2);
     let (left, right) = (numbers(picture), facts(picture));
-    let warnings = picture.report.warnings.len().min(3) as i32;
-    let foot = 44 + LINE * (left.len().max(right.len()) as i32 + warnings) + 16;
-    let below = HEAD + BEAM + ROW * rows.len() as i32;
+    let warnings: Vec<String> = (picture.report.warnings.iter().take(WARNINGS))
+        .flat_map(|warning| wrapped(&format!("warning: {warning}"), WORDS))
+        .collect();
+    let (said, colour) = verdict(&picture.report);
+    let said = wrapped(&said, WORDS);
+    let head = HEAD + LINE * said.len() as i32;
+    let foot = 44 + LINE * (left.len().max(right.len()) + warnings.len()) as i32 + 16;
+    let below = head + KEYS + BEAM + ROW * rows.len() as i32;
 
     page("Equilibrium of a piezoelectric beam", WIDTH, below + foot, |root| {
-        let (head, rest) = root.split_vertically(HEAD * FINE);
-        title(&head, picture)?;
+        let (top, rest) = root.split_vertically(head * FINE);
+        heading(&top, &shortened(&picture.title, 80), (14, 12), 20, INK)?;
+        for (i, line) in said.iter().enumerate() {
+            words(&top, line, (14, HEAD + LINE * i as i32), 14, colour)?;
+        }
+        let (top, rest) = rest.split_vertically(KEYS * FINE);
+        for (area, (name, value)) in top.split_evenly((1, 3)).iter().zip(keys(picture)) {
+            words(area, &shortened(&name, 48), (14, 8), 12, FAINT)?;
+            heading(area, &typeset(&shortened(&value, 34)), (14, 26), 16, INK)?;
+        }
         let (top, rest) = rest.split_vertically(BEAM * FINE);
         beam::panel(&top, picture)?;
         let mut rest = rest;
@@ -43,27 +61,26 @@ pub fn solve(picture: &Picture) -> String {
         }
         columns(&rest, &left, &right)?;
         let y = 44 + LINE * left.len().max(right.len()) as i32;
-        for (i, warning) in picture.report.warnings.iter().take(3).enumerate() {
-            let text = shortened(&format!("warning: {warning}"), 125);
-            words(&rest, &text, (14, y + LINE * i as i32), 13, VERMILLION)?;
+        for (i, line) in warnings.iter().enumerate() {
+            words(&rest, line, (14, y + LINE * i as i32), 13, VERMILLION)?;
         }
         Ok(())
     })
 }
 
-fn title(area: &Area, picture: &Picture) -> Drawn {
-    heading(area, &shortened(&picture.title, 80), (14, 12), 20, INK)?;
-    let (line, colour) = verdict(&picture.report);
-    words(area, &shortened(&line, 125), (14, 42), 14, colour)
-}
-
 fn verdict(report: &Report) -> (String, RGBColor) {
     if report.converged() {
-        let text = format!("converged, {} iterations, {} elements", report.iterations, report.elements);
-        return (text, FAINT);
+        let work = [(report.iterations, "iteration"), (report.elements, "element")]
+            .map(|(n, what)| counted(n, what));
+        let text = format!("converged, {}, residual {}", work.join(", "), significant(report.residual, 2));
+        return (typeset(&text), FAINT);
     }
     let reason = report.reason.as_deref().unwrap_or("no reason was recorded");
-    (format!("NOT CONVERGED, best iterate shown: {reason}"), VERMILLION)
+    let shown = match report.method.own_residual {
+        Some(_) => format!("what the method {} found is shown", report.method.name),
+        None => "best iterate shown".into(),
+    };
+    (format!("NOT CONVERGED, {shown}: {reason}"), VERMILLION)
 }
 
 /// One field over x: its curve, contact zones behind it, its extremes marked where they are not zero; `note` under its title.
@@ -92,6 +109,7 @@ pub fn panel(area: &Area, picture: &Picture, field: &Field, note: &str) -> Drawn
         y: y.clone(),
         x_label: &x_label,
         downwards: false,
+        logarithmic: false,
     };
     let mut chart = frame.draw(area)?;
     for [a, b] in picture.report.contact.iter().flat_map(|c| &c.zones) {
@@ -103,6 +121,9 @@ pub fn panel(area: &Area, picture: &Picture, field: &Field, note: &str) -> Drawn
         chart.draw_series([PathElement::new(zero, FAINT.stroke_width(FINE as u32))])?;
     }
     curve(&mut chart, &points, colour, 2)?;
+    if !values.is_empty() && values.iter().all(|&v| v == 0.0) {
+        mark(&mut chart, (0.5 * length, 0.0), "zero everywhere", false, colour)?;
+    }
     for ((x, v), below) in telling(x, values) {
         let text = significant(v * scale.factor, 4);
         let at = (x * along.factor, v * scale.factor);
@@ -111,8 +132,8 @@ pub fn panel(area: &Area, picture: &Picture, field: &Field, note: &str) -> Drawn
     Ok(())
 }
 
-/// The numbers that matter: the largest deflection and where, contact, then as in the text report.
-fn numbers(picture: &Picture) -> Vec<(String, String)> {
+/// The numbers that matter: the largest deflection and where, contact.
+fn keys(picture: &Picture) -> Vec<(String, String)> {
     let samples = &picture.report.samples;
     let mut rows = Vec::new();
     let bending = samples.bending.as_deref().unwrap_or(&[]);
@@ -122,11 +143,27 @@ fn numbers(picture: &Picture) -> Vec<(String, String)> {
             true => "0 m".into(),
             false => format!("{} at x = {}", quantity(most, "m", 5), quantity(x, "m", 5)),
         };
-        rows.push(("largest deflection".to_owned(), value));
+        rows.push(("Largest deflection".to_owned(), value));
     }
+    let Some(contact) = &picture.report.contact else {
+        rows.push(("Contact".into(), "no foundation".into()));
+        return rows;
+    };
+    rows.push(("Contact force".into(), quantity(contact.force, "N", 6)));
+    let pressed: f64 = contact.zones.iter().map(|[a, b]| b - a).sum();
+    let share = significant(100.0 * pressed / picture.length, 3);
+    rows.push((format!("In contact, {share} % of the length"), zones(&contact.zones, picture.length, 4, 2)));
+    rows
+}
+
+/// The rest of the text report's numbers.
+fn numbers(picture: &Picture) -> Vec<(String, String)> {
+    let mut rows = Vec::new();
     for (name, value) in text::results(picture) {
         let value = match (name.as_str(), &picture.report.contact) {
-            ("contact zones", Some(contact)) => zones(&contact.zones, picture.length, 4, 2),
+            ("contact force", _) | ("contact zones", None) => continue,
+            ("contact zones", Some(contact)) if contact.zones.len() < 3 => continue,
+            ("contact zones", Some(contact)) => zones(&contact.zones, picture.length, 3, 5),
             ("uniqueness", _) => match picture.report.uniqueness.certified {
                 true => "certified: one solution only".into(),
                 false => "not certified: there may be several".into(),
@@ -157,7 +194,7 @@ fn columns(area: &Area, left: &[(String, String)], right: &[(String, String)]) -
             let y = 38 + LINE * i as i32;
             words(area, &shortened(name, 21), (x, y), 13, FAINT)?;
             if !value.is_empty() {
-                words(area, &shortened(value, 40), (x + 150, y), 13, INK)?;
+                words(area, &shortened(&typeset(value), 42), (x + 165, y), 13, INK)?;
             }
         }
     }
@@ -191,7 +228,11 @@ mod tests {
             &picture,
             &[
                 "half pushed, half pulled",
-                "converged, 7 iterations, 100 elements",
+                "converged, 7 iterations, 100 elements, residual 3.2e−13",
+                "Largest deflection",
+                "Contact force",
+                "In contact, 31.9 % of the length",
+                "bending stiffness",
                 "Bending ξ [mm], positive downwards",
                 "Moment C ξ″ [kN m]",
                 "Shear (C ξ″)′ [kN]",
@@ -226,6 +267,16 @@ mod tests {
 
     #[test]
     fn micrometres_and_markup() {
+        // All of a long verdict, and of a long warning, is there.
+        let mut picture = fixture::partial();
+        picture.report.status = "foundation_pulls".into();
+        picture.report.reason = Some("word ".repeat(60) + "end");
+        picture.report.method =
+            crate::report::Method { name: "gauss", own_residual: Some(0.0), ..Default::default() };
+        picture.report.warnings = vec!["slope ".repeat(40) + "last"];
+        let labels = labels(&picture).join(" ");
+        assert!(labels.contains("what the method gauss found is shown: word"), "{labels}");
+        assert!(labels.contains("word end") && labels.contains("slope last"), "{labels}");
         has(
             &fixture::mems(),
             &[

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use comfy_table::{CellAlignment, Table, presets};
 
-use super::{extremes, fields, quantity, significant, zones};
+use super::{counted, extremes, fields, quantity, significant, zones};
 use crate::report::{Checked, Picture, Report, Sensitivities, Timing, Uniqueness};
 
 const DIGITS: usize = 6;
@@ -16,11 +16,12 @@ pub fn solve(picture: &Picture) -> String {
     let _ = writeln!(out, "{}", picture.title);
     let _ = writeln!(
         out,
-        "{} elements, {}, {} element visits, {}, residual {}\n",
+        "{} elements, {}, {} element visits, {}, {}, residual {}\n",
         report.elements,
         counted(report.iterations, "iteration"),
         report.element_visits,
         report.precision,
+        report.method.name,
         significant(report.residual, 3)
     );
     out += &lines(field_table(picture));
@@ -75,6 +76,18 @@ fn status(report: &Report) -> String {
         "f32" => "--precision f64 for more digits, ",
         _ => "",
     };
+    if let (name, Some(own)) = (report.method.name, report.method.own_residual) {
+        let pressures = [report.method.lowest_pressure, report.method.highest_pressure];
+        let [low, high] = pressures.map(|p| quantity(p.unwrap_or(0.0), "N/m", 3));
+        return format!(
+            "NOT CONVERGED ({}): {reason}\n\
+             The numbers below are what {name} found, not a solution: its own residual is {}, its contact \
+             pressure from {low} to {high}.\n\
+             Try --method newton, which integrates the contact up to its edges.\n",
+            report.status,
+            significant(own, 2)
+        );
+    }
     // A tolerance is a number below one.
     let stop = match report.residual {
         residual if residual < 1e-3 => {
@@ -258,14 +271,11 @@ pub(super) fn lines(mut table: Table) -> String {
     out
 }
 
-fn counted(n: usize, noun: &str) -> String {
-    format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::render::fixture;
+    use crate::report::Method;
 
     fn has(text: &str, lines: &[&str]) {
         let squeezed: Vec<_> = text.lines().map(squeeze).collect();
@@ -285,7 +295,7 @@ mod tests {
         has(
             &text,
             &[
-                "100 elements, 7 iterations, 812 element visits, f64, residual 3.2e-13",
+                "100 elements, 7 iterations, 812 element visits, f64, newton, residual 3.2e-13",
                 "least at x greatest at x",
                 "contact zones [0, 0.3185] m (31.9 % of the length)",
                 "contact force 187.039 kN",
@@ -321,6 +331,22 @@ mod tests {
         assert!(text.contains("--precision f64") && text.contains("--elements 200"), "{text}");
         assert!(text.ends_with("\nwarning: the gap is not smooth\nwarning: second\n"), "{text}");
         assert!(text.contains("electric fails, 0.5 times what is needed"), "{text}");
+    }
+
+    #[test]
+    fn methods_of_the_paper() {
+        let mut picture = fixture::partial();
+        picture.report.status = "foundation_pulls".into();
+        picture.report.reason = Some("the foundation pulls".into());
+        picture.report.method = Method {
+            name: "elementwise",
+            own_residual: Some(0.0),
+            lowest_pressure: Some(-8.25e9),
+            highest_pressure: Some(5.6e9),
+        };
+        let text = solve(&picture);
+        assert!(text.contains("what elementwise found, not a solution: its own residual is 0"), "{text}");
+        assert!(text.contains("from -8.25 GN/m to 5.6 GN/m.\nTry --method newton"), "{text}");
     }
 
     #[test]

@@ -20,7 +20,12 @@ impl SceneFile {
                 field.into(),
                 "it has to be finite on the whole beam; --precision f32 holds numbers up to 3.4e38".into(),
             ),
-            Error::Value { field, .. } => (field.into(), unit(field)),
+            Error::Value { field: field @ ("omega" | "mu" | "rho"), .. } => {
+                return FileError::new(&format!("--{field}"), error.to_string());
+            }
+            Error::Value { field, .. } => {
+                (field.into(), unit(field).map_or(String::new(), |unit| format!("it is in {unit}")))
+            }
             Error::Jump { field, .. } => (field.into(), "give pieces whose values meet at the break".into()),
             Error::Missing { field, needed_by } => (field.into(), format!("add it, or take {needed_by} out")),
             Error::Length { field, .. } => (field.into(), String::new()),
@@ -31,17 +36,43 @@ impl SceneFile {
     }
 }
 
-fn unit(field: &str) -> String {
-    let unit = match field {
+/// The unit of a field, or of the numbers in it.
+pub fn unit(field: &str) -> Option<&'static str> {
+    let inside = field.find(".values[").or_else(|| field.find(".y["));
+    let field = inside.map_or(field, |at| &field[..at]);
+    let point = field.strip_prefix("load.points[").and_then(|rest| rest.split_once("].")).map(|(_, key)| key);
+    let unit = match point.unwrap_or(field) {
         "beam.bending" => "N m^2",
         "beam.axial" => "N",
         "beam.permittivity" => "N m^2/V^2",
         "foundation.stiffness" => "N/m^2",
         "conduction.mu1" | "conduction.mu2" => "N/(V m^2)",
+        "foundation.gap" | "length" | "mesh.nodes" => "m",
+        "beam.piezo" => "N m/V",
         "load.transverse" | "load.axial" => "N/m",
         "potential.left" | "potential.right" | "conduction.potential_truncation" => "V",
-        "foundation.gap" | "length" | "mesh.nodes" | "conduction.truncation" => "m",
-        _ => return String::new(),
+        "conduction.truncation" | "x" => "m",
+        "force" => "N",
+        "moment" => "N m",
+        _ => return None,
     };
-    format!("it is in {unit}")
+    Some(unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::unit;
+
+    #[test]
+    fn fields_and_the_numbers_in_them_have_one_unit() {
+        for (field, expected) in [
+            ("foundation.stiffness", Some("N/m^2")),
+            ("load.transverse.values[1]", Some("N/m")),
+            ("load.transverse.breaks[0]", None),
+            ("load.points[12].moment", Some("N m")),
+            ("mesh.elements", None),
+        ] {
+            assert_eq!(unit(field), expected, "{field}");
+        }
+    }
 }

@@ -26,6 +26,29 @@ struct Rows(Vec<Row>);
 impl SceneFile {
     /// The scene as aligned lines of fields, values and units.
     pub fn describe(&self) -> String {
+        format!("scene {}\n{}", printable(&self.name), self.rows().aligned())
+    }
+
+    /// Fields and their values with units, without the mesh and what the scene does not have, or has as anyone
+    /// would expect.
+    pub fn facts(&self) -> Vec<(String, String)> {
+        let bound = self.conduction.as_ref().and_then(|conduction| conduction.potential_truncation);
+        let plain = |row: &Row| match row.field.as_str() {
+            "foundation.exponent" => row.value == "1",
+            "conduction.potential_truncation" => bound.is_none(),
+            field => {
+                row.value == "none"
+                    || field.starts_with("mesh")
+                    || (field.ends_with(".moment") && row.value == "0")
+            }
+        };
+        let rows = self.rows().0.into_iter();
+        rows.filter(|row| !plain(row))
+            .map(|row| (row.field, format!("{} {}", row.value, row.unit).trim_end().to_owned()))
+            .collect()
+    }
+
+    fn rows(&self) -> Rows {
         let mut rows = Rows::default();
         rows.add("length", number(self.length), "m");
         rows.beam(&self.beam);
@@ -43,9 +66,7 @@ impl SceneFile {
             None => rows.add("potential", "none", ""),
         }
         rows.mesh(&self.mesh);
-        let mut text = format!("scene {}\n", printable(&self.name));
-        text.push_str(&rows.aligned());
-        text
+        rows
     }
 }
 
@@ -224,6 +245,16 @@ mod tests {
             Ok(scene) => scene.describe(),
             Err(error) => panic!("{error}"),
         }
+    }
+
+    #[test]
+    fn facts_are_what_is_special() {
+        let text = "length = 2.0\nbeam.bending = 3.0\nfoundation.stiffness = 1e8\n[[load.points]]\nx = 1\nforce = 5\n";
+        let facts = parse(text, "scene.toml").expect("a scene").facts();
+        let fields: Vec<_> = facts.iter().map(|(field, value)| format!("{field} {value}")).collect();
+        let expected = ["length 2 m", "beam.bending 3 N m^2", "foundation.stiffness 1e8 N/m^2"];
+        assert_eq!(fields[..3], expected);
+        assert_eq!(fields[3..], ["load.points[0].x 1 m", "load.points[0].force 5 N"]);
     }
 
     #[test]

@@ -8,6 +8,7 @@
 
 mod complaint;
 mod describe;
+mod entries;
 mod error;
 mod expression;
 mod lines;
@@ -22,6 +23,8 @@ mod table;
 
 use toml::de::DeTable;
 
+pub use complaint::unit;
+pub use entries::{Entries, Entry};
 pub use error::{FileError, printable};
 
 pub use profile::ProfileSpec;

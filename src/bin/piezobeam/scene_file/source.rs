@@ -21,6 +21,14 @@ pub fn read(path: &Path) -> Result<SceneFile, FileError> {
     from_bytes(&bytes(path, &name)?, &name)
 }
 
+/// The name which messages use, and the text.
+pub(super) fn load(path: &Path) -> Result<(String, String), FileError> {
+    let name = path.to_string_lossy();
+    let bytes = bytes(path, &name)?;
+    let text = text(&bytes, &name)?.to_owned();
+    Ok((name.into_owned(), text))
+}
+
 /// Reads the scene in the `bytes` of a file which messages call `name`.
 ///
 /// # Errors

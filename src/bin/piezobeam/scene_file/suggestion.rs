@@ -31,6 +31,13 @@ pub(super) fn for_key(key: &str, path: &str, allowed: &[&str]) -> String {
     }
 }
 
+/// Whether the format knows a field of this dotted path.
+pub(super) fn is_key(path: &str) -> bool {
+    let (table, key) = path.rsplit_once('.').unwrap_or(("", path));
+    let table = table.split('[').next().unwrap_or_default();
+    TABLES.iter().any(|(name, keys)| *name == table && keys.contains(&key))
+}
+
 /// The candidate which `word` most resembles, when it resembles one at all.
 pub(super) fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     if word.chars().count() > 40 {
