@@ -19,7 +19,7 @@ use crate::cubic::Cubic;
 use crate::element::Element;
 use crate::element::hermite::Motion;
 use crate::element::linear::{Flexibility, Inverse, current};
-use crate::profile::{Piece, Profile, Slot};
+use crate::profile::{Profile, Slot};
 use crate::real::{Real, Sum};
 use crate::scene::Model;
 use crate::storage::{Node, Place};
@@ -211,12 +211,12 @@ pub(crate) fn potential<T: Real, M: Model<T>>(
 
 /// mu2 is there and not zero everywhere.
 pub(crate) fn conducts_into<T: Real, M: Model<T>>(places: &[Place<T, M>]) -> bool {
-    M::Mu2::PRESENT && places.iter().any(|p| p.element.mu2.constant() != Some(T::zero()))
+    places.iter().any(|p| p.element.conducts_into())
 }
 
 /// mu1 is there and not zero everywhere.
 pub(crate) fn conducts_onto<T: Real, M: Model<T>>(places: &[Place<T, M>]) -> bool {
-    M::Mu1::PRESENT && places.iter().any(|p| p.element.mu1.constant() != Some(T::zero()))
+    places.iter().any(|p| p.element.conducts_onto())
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use crate::certificate::{self, Uniqueness, Warning};
 use crate::cubic::{Cubic, Side};
 use crate::electric::{self, Ratio};
 use crate::element::Element;
-use crate::element::contact::{Contact, Fault, law_splits, parts};
+use crate::element::contact::{Contact, Fault, Splits, kinks, parts};
 use crate::element::hermite::Motion;
 use crate::element::linear::{Inverse, invert};
 use crate::law::{Compliance, truncate, truncate_positive};
@@ -100,7 +100,7 @@ pub(crate) struct Solved<'s, T: Real, M: Model<T>> {
     /// Force and moment at the left node: shear and minus the moment.
     held: T::Vec2,
     /// Kinks of the forces inside the element, in t.
-    pub(crate) splits: ArrayVec<T, 14>,
+    pub(crate) splits: Splits<T>,
 }
 
 impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
@@ -284,14 +284,7 @@ impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
         } else {
             Cubic::default()
         };
-        let bounds = self.scene.conduction();
-        let mut splits = ArrayVec::new();
-        splits.extend(law_splits::<T, M>(&eta));
-        if M::Mu1::PRESENT || M::Mu2::PRESENT {
-            splits.extend(eta.crossings(bounds.truncation));
-            splits.extend(q.crossings(bounds.potential_truncation));
-            splits.extend(q.crossings(-bounds.potential_truncation));
-        }
+        let splits = kinks(self.scene, &eta, (M::Mu1::PRESENT || M::Mu2::PRESENT).then_some(&q));
         let mid = element.x(T::of(0.5));
         let right = &work.node;
         let (held, rigid) = (T::Vec2::default(), self.rigid);

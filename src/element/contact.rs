@@ -11,7 +11,7 @@ use super::hermite::{Motion, work};
 use crate::cubic::{Cubic, Side};
 use crate::law::{Compliance, truncate, truncate_positive};
 use crate::profile::{Piece, Profile};
-use crate::quadrature::{POINTS, gauss};
+use crate::quadrature::{POINTS, add_moments, gauss};
 use crate::real::{Pair, Real, Square};
 use crate::scene::Model;
 use crate::sweep::Stamp;
@@ -53,7 +53,7 @@ impl Touch {
         if !M::Law::LINEAR || element.law.constant().is_none() {
             return Self::Mixed;
         }
-        if !element.conducts() {
+        if !element.conducts_onto() {
             return Self::Full;
         }
         let bounds = model.conduction();
@@ -138,7 +138,7 @@ impl<T: Real> Contact<T> {
             Touch::High => Ok(Self::full(touch, stiffness + drive())),
             Touch::Low => Ok(Self::full(touch, stiffness - drive())),
             Touch::Mixed => {
-                let q = if element.conducts() { q() } else { Cubic::default() };
+                let q = if element.conducts_onto() { q() } else { Cubic::default() };
                 Self::split(model, element, &eta, &q, scale, Tangent::Whole)
             }
         }
@@ -165,62 +165,37 @@ impl<T: Real> Contact<T> {
         of: Tangent,
     ) -> Result<Self, Fault> {
         let law = model.foundation().law;
-        let conducts = element.conducts();
+        let conducts = element.conducts_onto();
         let bounds = model.conduction();
         let (most, most_q) = (bounds.truncation, bounds.potential_truncation);
-        let mut splits = Splits::new();
-        splits.extend(law_splits::<T, M>(eta));
-        if conducts {
-            splits.extend(eta.crossings(most));
-            splits.extend(q.crossings(most_q));
-            splits.extend(q.crossings(-most_q));
-        }
+        let mut splits = kinks(model, eta, conducts.then_some(q));
         let mut contact = Self { touch: Touch::Mixed, ..Self::FREE() };
-        for (from, to) in parts(&mut splits) {
-            let length = to - from;
-            if eta.at(from + T::of(0.5) * length) <= T::zero() {
-                continue;
+        touching(eta, &mut splits).try_for_each(|(t, weight)| {
+            let r = eta.at(t);
+            if r <= T::zero() {
+                return Ok(()); // Within rounding of the edge.
             }
-            for (z, weight) in gauss::<POINTS>() {
-                let t = from + length * T::of(z);
-                let r = eta.at(t);
-                if r <= T::zero() {
-                    continue; // Within rounding of the edge.
-                }
-                let (p, dp) = law.pressure(element.law.at(t), element.x(t), r);
-                if !(p.is_finite() && dp.is_finite()) {
-                    return Err(Fault::NotFinite);
-                }
-                if p < T::zero() || dp < T::zero() {
-                    return Err(Fault::NotMonotone);
-                }
-                let (mut force, mut tangent) = (scale * p, scale * dp);
-                if conducts {
-                    let drive = element.mu1.at(t) * truncate(q.at(t), most_q).0;
-                    let (value, slope) = truncate_positive(r, most);
-                    force = force + drive * value;
-                    if of == Tangent::Whole || drive > T::zero() {
-                        tangent = tangent + drive * slope;
-                    }
-                }
-                contact.add(t, T::of(weight) * length, tangent, tangent * r - force);
+            let (p, dp) = law.pressure(element.law.at(t), element.x(t), r);
+            if !(p.is_finite() && dp.is_finite()) {
+                return Err(Fault::NotFinite);
             }
-        }
+            if p < T::zero() || dp < T::zero() {
+                return Err(Fault::NotMonotone);
+            }
+            let (mut force, mut tangent) = (scale * p, scale * dp);
+            if conducts {
+                let drive = element.mu1.at(t) * truncate(q.at(t), most_q).0;
+                let (value, slope) = truncate_positive(r, most);
+                force = force + drive * value;
+                if of == Tangent::Whole || drive > T::zero() {
+                    tangent = tangent + drive * slope;
+                }
+            }
+            add_moments(&mut contact.stiffness, t, weight * tangent);
+            add_moments(&mut contact.offset, t, weight * (tangent * r - force));
+            Ok(())
+        })?;
         Ok(contact)
-    }
-
-    #[inline(always)]
-    fn add(&mut self, t: T, weight: T, tangent: T, offset: T) {
-        let mut part = weight * tangent;
-        for moment in &mut self.stiffness {
-            *moment = *moment + part;
-            part = part * t;
-        }
-        let mut part = weight * offset;
-        for moment in &mut self.offset {
-            *moment = *moment + part;
-            part = part * t;
-        }
     }
 
     /// The element's energy in (e, d): bending about the gap's own bend, loads, and this contact.
@@ -293,15 +268,21 @@ impl<T: Real> Contact<T> {
     }
 }
 
-/// Where the integral of the pressure is split: where the penetration crosses zero, and for a curved law where
+/// Where the integrals of the contact are split: where the penetration crosses zero, and for a curved law where
 /// it turns. There two crossings are born and die, and as such a law is not integrated exactly, its force
-/// would jump with the number of parts.
+/// would jump with the number of parts. With conduction by the potential `q` also where both are truncated.
 #[inline(always)]
-pub(crate) fn law_splits<T: Real, M: Model<T>>(eta: &Cubic<T>) -> ArrayVec<T, 5> {
-    let mut splits = ArrayVec::new();
+pub(crate) fn kinks<T: Real, M: Model<T>>(model: &M, eta: &Cubic<T>, q: Option<&Cubic<T>>) -> Splits<T> {
+    let mut splits = Splits::new();
     splits.extend(eta.crossings(T::zero()));
     if !M::Law::LINEAR {
         splits.extend(eta.turning_points());
+    }
+    if let Some(q) = q {
+        let bounds = model.conduction();
+        splits.extend(eta.crossings(bounds.truncation));
+        splits.extend(q.crossings(bounds.potential_truncation));
+        splits.extend(q.crossings(-bounds.potential_truncation));
     }
     splits
 }
@@ -324,11 +305,42 @@ pub(crate) fn parts<T: Real, const N: usize>(splits: &mut ArrayVec<T, N>) -> imp
     })
 }
 
+/// Points in t, with their weights, of a quadrature between the splits.
+pub(crate) fn points<T: Real, const N: usize>(
+    splits: &mut ArrayVec<T, N>,
+) -> impl Iterator<Item = (T, T)> + use<'_, T, N> {
+    parts(splits).flat_map(points_between)
+}
+
+/// The same on the parts where the penetration `eta` is positive, or no number: the law shall see that.
+pub(crate) fn touching<'a, T: Real, const N: usize>(
+    eta: &'a Cubic<T>,
+    splits: &'a mut ArrayVec<T, N>,
+) -> impl Iterator<Item = (T, T)> + use<'a, T, N> {
+    // Not `> 0`, which is false of NaN.
+    let touches = |&(from, to): &(T, T)| {
+        let parted = eta.at(from + T::of(0.5) * (to - from)) <= T::zero();
+        !parted
+    };
+    parts(splits).filter(touches).flat_map(points_between)
+}
+
+fn points_between<T: Real>((from, to): (T, T)) -> impl Iterator<Item = (T, T)> {
+    let length = to - from;
+    gauss::<POINTS>().into_iter().map(move |(z, weight)| (from + length * T::of(z), T::of(weight) * length))
+}
+
 impl<T: Real, M: Model<T>> Element<T, M> {
     /// Has the conduction force mu1 R(q) R~(eta) a part here?
     #[inline(always)]
-    fn conducts(&self) -> bool {
+    pub(crate) fn conducts_onto(&self) -> bool {
         M::Mu1::PRESENT && self.mu1.constant() != Some(T::zero())
+    }
+
+    /// Has the conduction current mu2 R~(eta)^2 a part here?
+    #[inline(always)]
+    pub(crate) fn conducts_into(&self) -> bool {
+        M::Mu2::PRESENT && self.mu2.constant() != Some(T::zero())
     }
 
     /// The parts of the element where the penetration is positive, as intervals in t.

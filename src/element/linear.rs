@@ -12,7 +12,7 @@
 //! where they vary, Galerkin takes the inverse of the mean of K instead of the mean of the inverse and
 //! is off by O(h^2), while this stays exact at nodes.
 
-use super::contact::parts;
+use super::contact::touching;
 use super::hermite::Motion;
 use super::{Element, POINTS, Span};
 use crate::error::Error;
@@ -197,7 +197,7 @@ pub(crate) fn current<T: Real, M: Model<T>>(
 ) -> Source<T> {
     let zero = T::zero();
     let mut source = Source { total: zero, stretch: zero, charge: zero };
-    if !M::Mu2::PRESENT || element.mu2.constant() == Some(zero) {
+    if !element.conducts_into() {
         return source;
     }
     let most = model.conduction().truncation;
@@ -208,19 +208,12 @@ pub(crate) fn current<T: Real, M: Model<T>>(
     let mut splits: ArrayVec<T, 6> = ArrayVec::new();
     splits.extend(eta.crossings(zero));
     splits.extend(eta.crossings(most));
-    for (from, to) in parts(&mut splits) {
-        let length = to - from;
-        if eta.at(from + T::of(0.5) * length) <= zero {
-            continue;
-        }
-        for (z, weight) in gauss::<POINTS>() {
-            let t = from + length * T::of(z);
-            let r = truncate_positive(eta.at(t), most).0;
-            let part = element.h * (T::of(weight) * length) * element.mu2.at(t) * (r * r);
-            source.total = source.total + part;
-            source.stretch = source.stretch + element.h * part * element.flexibility.uq.integral(t);
-            source.charge = source.charge + element.h * part * element.flexibility.qq.integral(t);
-        }
-    }
+    touching(&eta, &mut splits).for_each(|(t, weight)| {
+        let r = truncate_positive(eta.at(t), most).0;
+        let part = element.h * weight * element.mu2.at(t) * (r * r);
+        source.total = source.total + part;
+        source.stretch = source.stretch + element.h * part * element.flexibility.uq.integral(t);
+        source.charge = source.charge + element.h * part * element.flexibility.qq.integral(t);
+    });
     source
 }

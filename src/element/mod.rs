@@ -152,6 +152,11 @@ impl<T: Real, M: Model<T>> Element<T, M> {
         })
     }
 
+    /// The bending stiffness, its mean in the last entry of the bending energy, 4 C / h \[N m^2\].
+    pub(crate) fn stiffness(&self) -> T {
+        self.bending.yy * self.h * T::of(0.25)
+    }
+
     /// The stiffness of a foundation that is rigid to this element \[N/m^2\].
     pub(crate) fn rigid(&self) -> T {
         // 4 C / h is the last entry of the bending energy.

@@ -11,7 +11,7 @@
 //! *Globalised by work.* No norm of the residual serves as a merit: where the conduction force outweighs the
 //! foundation (mu1 R(q) < -k) the beam snaps towards it, and on the way every norm grows. But the work of the
 //! residual along a step says whether the step goes where the forces pull: with the potential as it is it is
-//! the derivative of the energy. A Newton step that would do negative work leads back to an unstable
+//! the derivative of the energy. A Newton step along which the residual would do positive work leads back to an unstable
 //! equilibrium, or to the ghost of one; then the step with the tangent's nondecreasing part alone is
 //! taken, which is symmetric, positive definite but for the coupling, and always downhill: the concave part
 //! of the energy is taken as linear (the convex-concave procedure). Either step goes as far as the forces
@@ -31,7 +31,7 @@ use crate::sweep::{Condensed, End};
 
 /// Share of a change that comes back through the potential from which on slow progress is laid to it.
 const TIED: f64 = 0.1;
-/// A step is never taken more often than this, however far the forces pull.
+/// A step is never taken farther than so many times its length, however far the forces pull.
 const FARTHEST: f64 = 1e6;
 /// Share of the work at its start that a searched step may leave.
 const SLACK: f64 = 0.2;
@@ -75,7 +75,7 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
             drive = drive.max(element.mu1.mean() * r);
             current = current.max(element.mu2.mean() * r);
             resistance = resistance.max(element.flexibility.mean().qq);
-            softest = softest.min(element.bending.yy * element.h * T::of(0.25));
+            softest = softest.min(element.stiffness());
             left = right;
         }
         let square = model.length() * model.length();

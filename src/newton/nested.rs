@@ -170,9 +170,8 @@ fn quiet<T: Real, M: Model<T>>(model: &M, places: &[Place<T, M>], stop: T) -> T 
     let mut most = T::zero();
     for Place { element, .. } in places {
         let gap = model.foundation().gap.value(element.right, element.x(T::of(0.5)));
-        let stiffness = element.bending.yy * element.h * T::of(0.25);
         let bent = element.bending.times(element.gap.bend::<T>()).y().abs();
-        most = most.max(bent).max(gap.abs() * (stiffness / length / length));
+        most = most.max(bent).max(gap.abs() * (element.stiffness() / length / length));
     }
     T::of(64.0) * T::epsilon() / stop * most
 }
@@ -467,7 +466,7 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
 
     /// The largest bending stiffness \[N m^2\].
     fn bending(&self) -> T {
-        self.places.iter().fold(T::zero(), |m, p| m.max(p.element.bending.yy * p.element.h * T::of(0.25)))
+        self.places.iter().fold(T::zero(), |m, p| m.max(p.element.stiffness()))
     }
 
     /// The continuation in the stiffness, which is `stiffness` at most, from `scale` times it.
