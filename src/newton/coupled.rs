@@ -18,9 +18,10 @@
 //! pull, beyond its full length too, so that a snap through takes a few steps. A solution exists, as the
 //! terms that are not monotone are bounded; beyond (2.15) it need not be the only one.
 
-use super::{Context, Count, Halt, Level, Outcome, Residual, linearise, potential};
+use super::{Context, Count, Halt, Level, Outcome, Residual, potential};
 use crate::element::contact::{Contact, Tangent};
 use crate::element::coupled::Coupling;
+use crate::element::hermite::Motion;
 use crate::law::{Compliance, truncate, truncate_positive};
 use crate::profile::{Piece, Slot};
 use crate::real::{Pair, Quad, Real};
@@ -125,10 +126,9 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
     fn trial(&mut self, scale: T, count: &mut Count) -> Result<Trial<T>, Halt> {
         count.spend(self.places.len())?;
         let open = self.join_nodes();
-        self.electric();
-        let residual = self.balance(scale, true)?;
+        let residual = self.balance(scale)?;
         let work = self.places.iter().fold(T::zero(), |sum, Place { work, .. }| {
-            sum + work.link().map_or(T::zero(), |link| link.load.times(link.step.e))
+            sum + work.link().map_or(T::zero(), |link| work.open.times(link.step.e))
         });
         Ok(Trial { residual, work, open })
     }
@@ -191,18 +191,20 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
         };
         let (left, right) = (clamped(open), clamped(T::Vec2::default()));
         let (current, last) = (self.current, self.places.len() - 1);
+        let scale = self.scaling(scale);
         let mut node = self.node;
         let mut part = left.condensed;
         for (i, Place { element, work }) in self.places.iter_mut().enumerate() {
-            let (mut contact, motion) = linearise(model, element, work, &node, current, onto, scale)
-                .map_err(|fault| Halt::Law(i, fault))?;
+            let State { e, d } = work.states[current];
+            let motion = Motion::new(element.h, e, d);
             let q = potential(element, work, &node, onto);
-            if tangent == Tangent::Nondecreasing {
-                contact = Contact::nondecreasing(model, element, &motion, &q, scale)
-                    .map_err(|fault| Halt::Law(i, fault))?;
+            let contact = match tangent {
+                Tangent::Whole => Contact::at(model, element, &motion, || q, scale(i)),
+                Tangent::Nondecreasing => Contact::nondecreasing(model, element, &motion, &q, scale(i)),
             }
+            .map_err(|fault| Halt::Law(i, fault))?;
             let coupling = Coupling::at(model, element, &motion.cubic(), &q);
-            let stamp = coupling.stamp(element, &contact, -work.load(1 - current));
+            let stamp = coupling.stamp(element, &contact, -work.open);
             let h = element.h;
             let absorbed = if i == 0 { left.join(&part, &stamp, h) } else { part.absorb(&stamp, h) };
             let (next, factor) = absorbed.ok_or(Halt::Breakdown(i))?;
@@ -215,11 +217,12 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
         let mut near = right.close(&part).ok_or(Halt::Breakdown(last))?;
         let mut along = T::zero();
         for Place { element, work } in self.places.iter_mut().rev() {
+            let open = work.open;
             if let Some(link) = work.link_mut() {
                 let (e, far) = link.factor.substitute(near, element.h);
                 let ([ew, et, ..], [w, theta, ..]) = (e.array(), near.array());
                 link.step = State { e: T::Vec2::of(ew, et), d: T::Vec2::of(w, theta) };
-                along = along + link.load.times(link.step.e);
+                along = along + open.times(link.step.e);
                 near = far;
             }
         }
@@ -269,9 +272,8 @@ mod tests {
         let here = level.trial(1.0, &mut count).unwrap();
         level.best = Some((level.current, here.residual));
         level.step(here.open, 1.0, Tangent::Whole, &mut count).unwrap();
-        let loads = |level: &Level<'_, '_, f64, M>| -> Vec<_> {
-            level.places.iter().map(|p| p.work.link().unwrap().load).collect()
-        };
+        let loads =
+            |level: &Level<'_, '_, f64, M>| -> Vec<_> { level.places.iter().map(|p| p.work.open).collect() };
         let before = loads(level);
         level.go(t, 1.0, &mut count).unwrap();
         let after = loads(level);

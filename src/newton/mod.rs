@@ -73,13 +73,11 @@ impl<T: Real> Residual<T> {
         Self { mismatch: T::zero(), lever: T::zero(), size: T::zero(), load: T::zero(), sum: T::zero() }
     }
 
-    /// Compares an element's force and moment at one end, `held`, with what it should be; h leads to its
-    /// other end.
+    /// What an element's force and moment at one end are off by; h leads to its other end.
     #[inline(always)]
-    fn see(&mut self, gap: T::Vec2, held: T::Vec2, h: T) {
+    fn see(&mut self, gap: T::Vec2, h: T) {
         let far = gap.y() - h * gap.x();
         self.mismatch = larger(larger(self.mismatch, gap.y().abs()), far.abs());
-        self.measure(held, h);
         self.sum = self.sum + far;
     }
 
@@ -194,8 +192,7 @@ pub(crate) struct Level<'a, 'b, T: Real, M: Model<T>> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Solve<T: Real> {
     State,
-    /// An increment, where the element's loads are in the spare state and the left end has to move by
-    /// `open`.
+    /// An increment, loaded by what the elements leave open of equilibrium; the left end has to move by `open`.
     Increment {
         open: T::Vec2,
     },
@@ -611,19 +608,13 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             work.states[spare].d = work.states[current].d;
         }
         let mut open = self.join_nodes();
-        if self.two_way() {
-            self.electric();
-        }
-        let mut residual = self.balance(scale, true)?;
+        let mut residual = self.balance(scale)?;
         if self.best.is_some_and(|(_, best)| residual.relative() > T::of(2.0) * best.relative()) {
             for Place { work, .. } in self.places.iter_mut() {
                 work.states[current].d = work.states[spare].d;
             }
             open = T::Vec2::default();
-            if self.two_way() {
-                self.electric();
-            }
-            residual = self.balance(scale, true)?;
+            residual = self.balance(scale)?;
         }
         self.best = Some((current, residual));
         Ok(open)
@@ -686,7 +677,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
 
     /// The residual of the current state by statics, if it can be had.
     pub(crate) fn assess(&mut self) {
-        self.best = self.balance(T::one(), false).ok().map(|residual| (self.current, residual));
+        self.best = self.balance(T::one()).ok().map(|residual| (self.current, residual));
     }
 
     /// Makes the best state the current one.
@@ -720,7 +711,6 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         if let Solve::Increment { open } = solve {
             (left.value, right.value) = (open, T::Vec2::default());
         }
-        let spare = 1 - self.current;
         let step = solve != Solve::State;
         let whole = swept.len() == self.places.len();
         let (current, meeting, last) = (self.current, self.meeting, self.places.len() - 1);
@@ -748,15 +738,14 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 let held = element.deforming_force(motion.e) + ce;
                 if i > 0 {
                     let gap = beyond(west.force(far) + held, west.rounding(far), held, h);
-                    residual.see(gap, held, h);
+                    residual.see(gap, h);
                     residual.see_force(gap.x(), length);
-                } else {
-                    residual.measure(held, h);
                 }
+                residual.measure(held, h);
                 residual.load = residual.load + contact.size(&motion, cd, h) + element.fr.x().abs();
                 let mut stamp = contact.stamp(element);
                 if step {
-                    (stamp.fe, stamp.fr) = (-work.load(spare), T::Vec2::default());
+                    (stamp.fe, stamp.fr) = (-work.open, T::Vec2::default());
                 } else if M::Gap::PRESENT {
                     west = west.shift(element.gap.kink::<T>());
                 }
@@ -788,15 +777,14 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 if i < last {
                     let gap = east.force(motion.d) + held;
                     let gap = beyond(gap, east.rounding(motion.d), held, h);
-                    residual.see(gap, held, -h);
+                    residual.see(gap, -h);
                     residual.see_force(gap.x(), length);
-                } else {
-                    residual.measure(held, -h);
                 }
+                residual.measure(held, -h);
                 residual.load = residual.load + contact.size(&motion, cd, h) + element.fr.x().abs();
                 let mut stamp = contact.stamp(element);
                 if step {
-                    (stamp.fe, stamp.fr) = (-work.load(spare), T::Vec2::default());
+                    (stamp.fe, stamp.fr) = (-work.open, T::Vec2::default());
                 }
                 let stamp = stamp.mirrored(h);
                 let absorbed =
@@ -810,7 +798,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             let d = self.places[meeting - 1].work.states[current].d;
             let east = work.condensed.shift(-element.gap.kink::<T>());
             let gap = self.places[meeting - 1].work.condensed.force(d) + east.force(d);
-            residual.see(gap, T::Vec2::default(), T::zero());
+            residual.see(gap, T::zero());
             residual.see_force(gap.x(), length);
         }
         self.fresh = !step && (self.fresh || whole);
@@ -822,38 +810,26 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         if residual.is_finite() { Ok(residual) } else { Err(Halt::Breakdown(meeting - 1)) }
     }
 
-    /// The residual of the current state by statics: no part of the recursion is used.
-    ///
-    /// The shear at the left end is not taken from the first element, which knows it to N times rounding
-    /// only, but from the moments at both ends of the beam; hence two passes.
+    /// The residual of the current state by statics, on all elements.
     fn check(&mut self, scale: T, count: &mut Count) -> Result<Residual<T>, Halt> {
         count.spend(self.places.len())?;
+        self.balance(scale)
+    }
+
+    /// The residual by statics: no part of the recursion is used. Moments by deformation are compared with those
+    /// by statics from the left end, after u and q are renewed where bending moves them; each element keeps what
+    /// its force and moment are off by.
+    #[inline(never)]
+    fn balance(&mut self, scale: T) -> Result<Residual<T>, Halt> {
         if self.two_way() {
             self.electric();
         }
-        self.balance(scale, false)
-    }
-
-    /// The residual by statics; with `store`, each element's differences of force and moment go into the
-    /// spare state.
-    fn balance(&mut self, scale: T, store: bool) -> Result<Residual<T>, Halt> {
-        let Some(Place { element, work }) = self.places.first() else { return Ok(Residual::none()) };
-        let shear = element.deforming_force(work.states[self.current].e).x();
-        let (_, rest) = self.statics(scale, shear, false)?;
-        let shear = shear - rest / self.context.model.length();
-        self.statics(scale, shear, store).map(|(residual, _)| residual)
-    }
-
-    /// Moments by deformation against moments by statics from the left end, where the shear is `shear`;
-    /// the residual and the difference at the right end.
-    #[inline(never)]
-    fn statics(&mut self, scale: T, shear: T, store: bool) -> Result<(Residual<T>, T), Halt> {
         let Context { model, ref onto, .. } = *self.context;
         let scale = self.scaling(scale);
         let mut residual = Residual::none();
         let mut rest = T::zero();
         let (mut force, mut moment) = (Sum::<T>::default(), Sum::<T>::default());
-        let (current, spare) = (self.current, 1 - self.current);
+        let current = self.current;
         let mut node = self.node;
         for (i, Place { element, work }) in self.places.iter_mut().enumerate() {
             let h = element.h;
@@ -862,24 +838,29 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             let (ce, cd) = contact.force(&motion, h);
             let held = element.deforming_force(motion.e) + ce;
             if i == 0 {
-                (force, moment) = (Sum::from(-(shear + ce.x())), Sum::from(-held.y()));
+                (force, moment) = (Sum::from(-held.x()), Sum::from(-held.y()));
             }
-            let gap = T::Vec2::of(force.plus(held.x()), moment.plus(held.y()));
-            residual.see(gap, held, h);
-            rest = gap.y() - h * gap.x();
+            work.open = T::Vec2::of(force.plus(held.x()), moment.plus(held.y()));
+            rest = work.open.y() - h * work.open.x();
+            residual.measure(held, h);
             residual.load = residual.load + contact.size(&motion, cd, h) + element.fr.x().abs();
             let carried = cd - element.fr;
             moment.add(-(h * force.value()));
             moment.add(carried.y());
             force.add(carried.x());
-            if store {
-                work.set_load(spare, gap);
-            }
             node = work.node;
         }
-        residual.load = residual.load * model.length();
+        // The first element knows the shear at the left end to N times rounding only, the moments at both ends of
+        // the beam know it better: what it is off by grows to `rest` along the beam.
+        let length = model.length();
+        let slip = rest / length;
+        for Place { element, work } in self.places.iter_mut() {
+            work.open += T::Vec2::of(slip, -(slip * (element.right - element.h)));
+            residual.see(work.open, element.h);
+        }
+        residual.load = residual.load * length;
         residual.size = residual.size.max(self.context.quiet);
-        if residual.is_finite() { Ok((residual, rest)) } else { Err(Halt::Breakdown(0)) }
+        if residual.is_finite() { Ok(residual) } else { Err(Halt::Breakdown(0)) }
     }
 
     /// Back substitution from the meeting point to both ends: the new state beside the best one, and the
