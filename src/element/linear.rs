@@ -15,6 +15,7 @@
 use super::contact::touching;
 use super::hermite::Motion;
 use super::{Element, POINTS, Span};
+use crate::cubic::Side;
 use crate::error::Error;
 use crate::law::truncate_positive;
 use crate::profile::{Piece, Profile, Slot};
@@ -202,18 +203,27 @@ pub(crate) fn current<T: Real, M: Model<T>>(
     }
     let most = model.conduction().truncation;
     let eta = motion.cubic();
-    if eta.side(zero) == crate::cubic::Side::Below {
+    let side = eta.side(zero);
+    if side == Side::Below {
+        return source;
+    }
+    let mut see = |t: T, weight: T, r: T| {
+        let part = element.h * weight * element.mu2.at(t) * (r * r);
+        source.total = source.total + part;
+        let (stretch, charge) = element.flexibility.integral(t);
+        source.stretch = source.stretch + element.h * part * stretch;
+        source.charge = source.charge + element.h * part * charge;
+    };
+    if side == Side::Above && eta.side(most) == Side::Below {
+        for (t, weight) in gauss::<POINTS>() {
+            let t = T::of(t);
+            see(t, T::of(weight), eta.at(t));
+        }
         return source;
     }
     let mut splits: ArrayVec<T, 6> = ArrayVec::new();
     splits.extend(eta.crossings(zero));
     splits.extend(eta.crossings(most));
-    touching(&eta, &mut splits).for_each(|(t, weight)| {
-        let r = truncate_positive(eta.at(t), most).0;
-        let part = element.h * weight * element.mu2.at(t) * (r * r);
-        source.total = source.total + part;
-        source.stretch = source.stretch + element.h * part * element.flexibility.uq.integral(t);
-        source.charge = source.charge + element.h * part * element.flexibility.qq.integral(t);
-    });
+    touching(&eta, &mut splits).for_each(|(t, weight)| see(t, weight, truncate_positive(eta.at(t), most).0));
     source
 }
