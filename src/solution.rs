@@ -322,7 +322,7 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
 
     /// The contact, linearised at this state.
     pub(crate) fn contact(&self) -> Result<Contact<T>, Fault> {
-        Contact::at(self.scene, self.element, &self.motion, || self.q, T::one())
+        Contact::at(self.scene, self.element, &self.motion, Some(|| self.q), T::one())
     }
 
     pub(crate) fn t(&self, x: T) -> T {

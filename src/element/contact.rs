@@ -35,7 +35,7 @@ pub(crate) enum Touch {
 }
 
 impl Touch {
-    /// How `element` touches at the penetration `eta` and the potential `q`, without any quadrature.
+    /// How `element` touches at the penetration `eta` and the potential `q`, if it acts, without any quadrature.
     /// Unless it is `Mixed`, the element's matrix and its part in the right-hand side follow from this and
     /// its samples alone.
     #[inline(always)]
@@ -43,7 +43,7 @@ impl Touch {
         model: &M,
         element: &Element<T, M>,
         eta: &Cubic<T>,
-        q: impl FnOnce() -> Cubic<T>,
+        q: Option<impl FnOnce() -> Cubic<T>>,
     ) -> Self {
         match eta.side(T::zero()) {
             Side::Below => return Self::Free,
@@ -53,9 +53,7 @@ impl Touch {
         if !M::Law::LINEAR || element.law.constant().is_none() {
             return Self::Mixed;
         }
-        if !element.conducts_onto() {
-            return Self::Full;
-        }
+        let Some(q) = q.filter(|_| element.conducts_onto()) else { return Self::Full };
         let bounds = model.conduction();
         if element.mu1.constant().is_none() || eta.side(bounds.truncation) != Side::Below {
             return Self::Mixed;
@@ -115,21 +113,21 @@ impl<T: Real> Contact<T> {
         }
     }
 
-    /// Linearises the contact of `element` at `motion`, with the potential `q` and the law scaled by
+    /// Linearises the contact of `element` at `motion`, with the potential `q`, if it acts, and the law scaled by
     /// `scale` (1, but for the continuation in the stiffness).
     #[inline(always)]
     pub(crate) fn at<M: Model<T>>(
         model: &M,
         element: &Element<T, M>,
         motion: &Motion<T>,
-        q: impl Fn() -> Cubic<T>,
+        q: Option<impl Fn() -> Cubic<T>>,
         scale: T,
     ) -> Result<Self, Fault> {
         if !M::Law::PRESENT && !M::Mu1::PRESENT {
             return Ok(Self::FREE());
         }
         let eta = motion.cubic();
-        let touch = Touch::of(model, element, &eta, &q);
+        let touch = Touch::of(model, element, &eta, q.as_ref());
         let stiffness = scale * element.law.mean();
         let drive = || element.mu1.mean() * model.conduction().potential_truncation;
         match touch {
@@ -138,8 +136,8 @@ impl<T: Real> Contact<T> {
             Touch::High => Ok(Self::full(touch, stiffness + drive())),
             Touch::Low => Ok(Self::full(touch, stiffness - drive())),
             Touch::Mixed => {
-                let q = if element.conducts_onto() { q() } else { Cubic::default() };
-                Self::split(model, element, &eta, &q, scale, Tangent::Whole)
+                let q = q.filter(|_| element.conducts_onto()).map(|q| q());
+                Self::split(model, element, &eta, q.as_ref(), scale, Tangent::Whole)
             }
         }
     }
@@ -152,6 +150,7 @@ impl<T: Real> Contact<T> {
         q: &Cubic<T>,
         scale: T,
     ) -> Result<Self, Fault> {
+        let q = element.conducts_onto().then_some(q);
         Self::split(model, element, &motion.cubic(), q, scale, Tangent::Nondecreasing)
     }
 
@@ -160,15 +159,14 @@ impl<T: Real> Contact<T> {
         model: &M,
         element: &Element<T, M>,
         eta: &Cubic<T>,
-        q: &Cubic<T>,
+        q: Option<&Cubic<T>>,
         scale: T,
         of: Tangent,
     ) -> Result<Self, Fault> {
         let law = model.foundation().law;
-        let conducts = element.conducts_onto();
         let bounds = model.conduction();
         let (most, most_q) = (bounds.truncation, bounds.potential_truncation);
-        let mut splits = kinks(model, eta, conducts.then_some(q));
+        let mut splits = kinks(model, eta, q);
         let mut contact = Self { touch: Touch::Mixed, ..Self::FREE() };
         touching(eta, &mut splits).try_for_each(|(t, weight)| {
             let r = eta.at(t);
@@ -183,7 +181,7 @@ impl<T: Real> Contact<T> {
                 return Err(Fault::NotMonotone);
             }
             let (mut force, mut tangent) = (scale * p, scale * dp);
-            if conducts {
+            if let Some(q) = q {
                 let drive = element.mu1.at(t) * truncate(q.at(t), most_q).0;
                 let (value, slope) = truncate_positive(r, most);
                 force = force + drive * value;
@@ -595,7 +593,7 @@ mod tests {
             let motion = motion(h, &eta);
             for (touch, level) in [(Touch::High, 1.0), (Touch::Low, -1.0)] {
                 let q = Cubic([level * (height + 1e-9), level * 0.3, level * 0.2, level * 0.1]);
-                let closed = Contact::at(&model, &element, &motion, || q, 1.0).unwrap();
+                let closed = Contact::at(&model, &element, &motion, Some(|| q), 1.0).unwrap();
                 prop_assert_eq!(closed.touch, touch);
                 let split = Contact::split(&model, &element, &eta, &q, 1.0, Tangent::Whole).unwrap();
                 for (closed, split) in closed.stiffness.iter().zip(split.stiffness) {
@@ -608,7 +606,7 @@ mod tests {
             }
             let plain = scene(Linear(7.0), ());
             let element = self::element(&plain, h);
-            let closed = Contact::at(&plain, &element, &motion, Cubic::default, 0.25).unwrap();
+            let closed = Contact::at(&plain, &element, &motion, Some(Cubic::default), 0.25).unwrap();
             prop_assert_eq!(closed.touch, Touch::Full);
             let split = Contact::split(&plain, &element, &eta, &Cubic::default(), 0.25, Tangent::Whole).unwrap();
             for (closed, split) in closed.stiffness.iter().zip(split.stiffness) {
@@ -624,7 +622,7 @@ mod tests {
             let slack = 1e-14 * eta.0.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
             let below = points().all(|t| eta.at(t) <= slack);
             let within = points().all(|t| eta.at(t) >= -slack && eta.at(t) <= BOUND + slack);
-            let touch = Touch::of(&model, &element, &eta, || q);
+            let touch = Touch::of(&model, &element, &eta, Some(|| q));
             match touch {
                 Touch::Free => prop_assert!(below),
                 Touch::High => prop_assert!(within && points().all(|t| q.at(t) >= BOUND_Q - 1e-13)),
@@ -634,14 +632,14 @@ mod tests {
             }
             // Without a potential, and with one that acts nowhere, contact alone decides.
             let plain = scene(Linear(7.0), ());
-            let alone = Touch::of(&plain, &self::element(&plain, 0.3), &eta, || q);
+            let alone = Touch::of(&plain, &self::element(&plain, 0.3), &eta, Some(|| q));
             prop_assert_eq!(alone == Touch::Free, touch == Touch::Free);
             prop_assert!(alone != Touch::Full || points().all(|t| eta.at(t) >= -slack));
             prop_assert!(alone != Touch::High && alone != Touch::Low);
             let still = scene(Linear(7.0), 0.0);
-            prop_assert_eq!(Touch::of(&still, &self::element(&still, 0.3), &eta, || q), alone);
+            prop_assert_eq!(Touch::of(&still, &self::element(&still, 0.3), &eta, Some(|| q)), alone);
             let bent = scene(power(1.0), ());
-            let bent = Touch::of(&bent, &self::element(&bent, 0.3), &eta, || q);
+            let bent = Touch::of(&bent, &self::element(&bent, 0.3), &eta, Some(|| q));
             prop_assert_eq!(bent == Touch::Free, alone == Touch::Free);
             prop_assert!(bent == Touch::Free || bent == Touch::Mixed);
         }
@@ -661,7 +659,7 @@ mod tests {
             // t -> 1 - t
             let turned = |c: &Cubic<f64>| Cubic([c.at(1.0), -c.slope(1.0), c.0[2] + 3.0 * c.0[3], -c.0[3]]);
             let stamp = |eta: &Cubic<f64>, q: Cubic<f64>| {
-                Contact::at(&model, &element, &motion(h, eta), || q, 1.0).unwrap().stamp(&element)
+                Contact::at(&model, &element, &motion(h, eta), Some(|| q), 1.0).unwrap().stamp(&element)
             };
             let got = stamp(&eta, q).mirrored(h);
             let want = stamp(&turned(&eta), turned(&q));
@@ -709,7 +707,7 @@ mod tests {
         let element = element(&model, 0.3);
         let q = Cubic([0.1, 0.2, 0.0, 0.0]);
         let motion = motion(0.3, &Cubic([0.3, -0.5, 0.0, 0.0]));
-        let at = |scale| Contact::at(&model, &element, &motion, || q, scale).unwrap().stiffness[0];
+        let at = |scale| Contact::at(&model, &element, &motion, Some(|| q), scale).unwrap().stiffness[0];
         let plain = at(1.0) - at(0.0);
         assert!((at(0.5) - at(0.0) - 0.5 * plain).abs() < 1e-14);
         assert!((plain - 7.0 * 0.6).abs() < 1e-14);
@@ -720,7 +718,7 @@ mod tests {
         let motion = motion(0.3, &Cubic([0.3, 0.1, 0.0, 0.0]));
         let fault = |p: f64, slope: f64| {
             let model = scene(crate::Law(move |_: f64, _: f64| (p, slope)), ());
-            Contact::at(&model, &element(&model, 0.3), &motion, Cubic::default, 1.0).err()
+            Contact::at(&model, &element(&model, 0.3), &motion, Some(Cubic::default), 1.0).err()
         };
         assert_eq!(fault(1.0, 1.0), None);
         assert_eq!(fault(f64::NAN, 1.0), Some(Fault::NotFinite));

@@ -18,7 +18,8 @@
 //! pull, beyond its full length too, so that a snap through takes a few steps. A solution exists, as the
 //! terms that are not monotone are bounded; beyond (2.15) it need not be the only one.
 
-use super::{Context, Count, Halt, Level, Outcome, Residual, potential};
+use super::{Context, Count, Halt, Level, Outcome, Residual};
+use crate::electric;
 use crate::element::contact::{Contact, Tangent};
 use crate::element::coupled::Coupling;
 use crate::element::hermite::Motion;
@@ -197,9 +198,10 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
         for (i, Place { element, work }) in self.places.iter_mut().enumerate() {
             let State { e, d } = work.states[current];
             let motion = Motion::new(element.h, e, d);
-            let q = potential(element, work, &node, onto);
+            let q = onto.as_ref().map(|ratio| electric::potential(element, &node, &work.node, ratio));
+            let q = q.unwrap_or_default();
             let contact = match tangent {
-                Tangent::Whole => Contact::at(model, element, &motion, || q, scale(i)),
+                Tangent::Whole => Contact::at(model, element, &motion, Some(|| q), scale(i)),
                 Tangent::Nondecreasing => Contact::nondecreasing(model, element, &motion, &q, scale(i)),
             }
             .map_err(|fault| Halt::Law(i, fault))?;

@@ -38,7 +38,6 @@ mod settings;
 
 pub use settings::{Report, Settings, Status};
 
-use crate::cubic::Cubic;
 use crate::electric::{self, Ratio};
 use crate::element::Element;
 use crate::element::contact::{Contact, Fault, Touch};
@@ -559,7 +558,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             let (from, to) = (work.states[1 - self.current], work.states[self.current]);
             let State { e, d } = from.toward(to, t);
             let motion = Motion::new(element.h, e, d);
-            let q = || potential(element, work, node, onto);
+            let q = onto.as_ref().map(|ratio| || electric::potential(element, node, &work.node, ratio));
             let contact = match Contact::at(model, element, &motion, q, scale(i)) {
                 Err(Fault::NotFinite) => {
                     *fault = Some(Halt::Law(i, Fault::NotFinite));
@@ -926,7 +925,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         let mut node = &self.node;
         for (i, Place { element, work }) in self.places.iter().enumerate() {
             let State { e, d } = work.states[self.current];
-            let q = || potential(element, work, node, onto);
+            let q = onto.as_ref().map(|ratio| || electric::potential(element, node, &work.node, ratio));
             let eta = Motion::new(element.h, e, d).cubic();
             let touch = Touch::of(model, element, &eta, q);
             if touch == Touch::Mixed || touch != work.touch {
@@ -935,18 +934,6 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             node = &work.node;
         }
         if changed.start >= changed.end { 0..0 } else { changed }
-    }
-}
-
-fn potential<T: Real, M: Model<T>>(
-    element: &Element<T, M>,
-    work: &Work<T, M>,
-    left: &Node<T, M>,
-    ratio: &Option<Ratio<T>>,
-) -> Cubic<T> {
-    match ratio {
-        Some(ratio) => electric::potential(element, left, &work.node, ratio),
-        None => Cubic::default(),
     }
 }
 
@@ -963,7 +950,7 @@ fn linearise<T: Real, M: Model<T>>(
 ) -> Result<(Contact<T>, Motion<T>), Fault> {
     let State { e, d } = work.states[state];
     let motion = Motion::new(element.h, e, d);
-    let q = || potential(element, work, left, ratio);
+    let q = ratio.as_ref().map(|ratio| || electric::potential(element, left, &work.node, ratio));
     Contact::at(model, element, &motion, q, scale).map(|contact| (contact, motion))
 }
 
