@@ -105,12 +105,12 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
             if before.relative() <= T::of(4.0) * before.floor() && rounds_since_best >= 2 {
                 return Ok(Outcome::Floor);
             }
-            let mut start = match self.step(here.open, scale, Tangent::Whole, count) {
+            let mut start = match self.coupled_step(here.open, scale, Tangent::Whole, count) {
                 Err(Halt::Breakdown(_)) => T::zero(),
                 start => start?,
             };
             if start >= T::zero() {
-                start = self.step(here.open, scale, Tangent::Nondecreasing, count)?;
+                start = self.coupled_step(here.open, scale, Tangent::Nondecreasing, count)?;
             }
             here = self.go(T::one(), scale, count)?;
             if here.residual.mismatch > T::of(0.5) * before.mismatch && start < T::zero() {
@@ -181,7 +181,13 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
     /// The step at the current state, into the links; `open` is by how much the left end has to move. The work of
     /// the residual at its beginning.
     #[inline(never)]
-    fn step(&mut self, open: T::Vec2, scale: T, tangent: Tangent, count: &mut Count) -> Result<T, Halt> {
+    fn coupled_step(
+        &mut self,
+        open: T::Vec2,
+        scale: T,
+        tangent: Tangent,
+        count: &mut Count,
+    ) -> Result<T, Halt> {
         count.spend(self.places.len())?;
         count.iterations += 1;
         let Context { model, ref onto, .. } = *self.context;
@@ -273,7 +279,7 @@ mod tests {
         level.best = None;
         let here = level.trial(1.0, &mut count).unwrap();
         level.best = Some((level.current, here.residual));
-        level.step(here.open, 1.0, Tangent::Whole, &mut count).unwrap();
+        level.coupled_step(here.open, 1.0, Tangent::Whole, &mut count).unwrap();
         let loads =
             |level: &Level<'_, '_, f64, M>| -> Vec<_> { level.places.iter().map(|p| p.work.open).collect() };
         let before = loads(level);
@@ -344,8 +350,8 @@ mod tests {
             let here = level.trial(1.0, &mut count).unwrap();
             level.best = Some((level.current, here.residual));
             // The whole tangent leads uphill: the foundation pulls more than the beam holds.
-            assert!(level.step(here.open, 1.0, Tangent::Whole, &mut count).unwrap() > 0.0);
-            assert!(level.step(here.open, 1.0, Tangent::Nondecreasing, &mut count).unwrap() < 0.0);
+            assert!(level.coupled_step(here.open, 1.0, Tangent::Whole, &mut count).unwrap() > 0.0);
+            assert!(level.coupled_step(here.open, 1.0, Tangent::Nondecreasing, &mut count).unwrap() < 0.0);
         });
     }
 }

@@ -197,6 +197,14 @@ enum Solve<T: Real> {
     },
 }
 
+/// What an iteration is to reach.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Goal<T> {
+    /// The relative residual; on the finest mesh that by statics, else that of a sweep, and one step more.
+    pub(crate) stop: T,
+    pub(crate) finest: bool,
+}
+
 /// How an iteration on one mesh ended, if it was not halted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
@@ -237,17 +245,18 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         self.node = electric::solve::<T, M, false>(self.context.model, self.places, self.current);
     }
 
-    /// Iterates until the relative residual is at most `stop`, at most `most` times, with the law scaled by
-    /// `scale`. The current state is then the best one found.
+    /// Iterates to the goal, at most `most` times, with the law scaled by `scale`. The current state is then the best
+    /// one found.
     pub(crate) fn iterate(
         &mut self,
         scale: T,
-        stop: T,
+        goal: Goal<T>,
         most: usize,
         count: &mut Count,
     ) -> Result<Outcome, Halt> {
-        let all = 0..self.places.len();
-        self.iterate_from(all, scale, stop, most, count)
+        // The scale is a new one wherever the beam touches.
+        let changed = self.changed(true);
+        self.iterate_from(changed, scale, goal, most, count)
     }
 
     /// The same, where only the elements `changed` have changed since they were condensed last.
@@ -255,16 +264,16 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         &mut self,
         changed: Range<usize>,
         scale: T,
-        stop: T,
+        goal: Goal<T>,
         most: usize,
         count: &mut Count,
     ) -> Result<Outcome, Halt> {
         self.best = None;
         let changed = if self.fresh { changed } else { 0..self.places.len() };
-        let mut outcome = self.descend(changed, scale, stop, most, count);
+        let mut outcome = self.descend(changed, scale, goal, most, count);
         if outcome == Ok(Outcome::Stalled) && !self.convex() {
             self.keep_best();
-            outcome = self.descend_coupled(scale, stop, most, count);
+            outcome = self.descend_coupled(scale, goal.stop, most, count);
         }
         if outcome != Ok(Outcome::Converged) {
             self.keep_best();
@@ -283,17 +292,19 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         count.spend(all.len())?;
         self.condense(all, T::zero(), Solve::State)?;
         count.iterations += 1;
-        self.substitute(false).ok_or(Halt::Breakdown(self.meeting - 1))
+        self.substitute(false).ok_or(Halt::Breakdown(self.meeting - 1))?;
+        Ok(self.changed(false))
     }
 
     fn descend(
         &mut self,
         mut changed: Range<usize>,
         scale: T,
-        stop: T,
+        goal: Goal<T>,
         most: usize,
         count: &mut Count,
     ) -> Result<Outcome, Halt> {
+        let stop = goal.stop;
         if self.two_way() {
             self.electric_rounded();
         }
@@ -302,26 +313,47 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         let (mut slow, mut last) = (0, T::infinity());
         // What rounding may leave of a sweep's residual: 1/h times that of e is in the forces.
         let blur = T::of(64.0) * T::epsilon() * T::from(self.places.len()).unwrap_or(T::one());
-        for _ in 0..=most {
+        let mut step = T::infinity();
+        for round in 0..=most {
             let mut residual = Residual::none();
             // Only statics can say that a solve has converged.
             let mut checked = false;
-            if !changed.is_empty() {
-                let swept = self.extent(&changed);
-                count.spend(swept.len())?;
-                let condensed = self.condense(swept, scale, Solve::State);
-                // There is a way back where a state was good before.
-                residual = if self.best.is_some() { self.tried(condensed)? } else { condensed? };
+            if goal.finest && (last <= T::of(QUADRATIC) || (round == 1 && step <= T::of(SHORT))) {
+                // The step before was so short that it may have been the last: statics costs less than a sweep.
+                let balanced = self.check(scale, count);
+                residual = self.tried(balanced)?;
+                checked = residual.relative() <= stop;
             }
-            // Rounding may be all that is left without being known beforehand: a gap far above the beam's own
-            // bending adds to it. A sweep that gains nothing then asks statics, too.
-            let swept = residual.relative();
-            let done = swept <= stop.max(blur).max(residual.floor());
-            let near = swept <= T::of(NEAR) && swept > T::of(0.5) * last;
-            if done || near || rounds_since_best == IDLE {
-                // Nothing changed, or as little as a sweep can tell: ask statics, on all elements.
-                residual = self.settle(scale, stop, count)?;
-                checked = true;
+            if !checked {
+                residual = Residual::none();
+                if !changed.is_empty() {
+                    let swept = self.extent(&changed);
+                    count.spend(swept.len())?;
+                    let condensed = self.condense(swept, scale, Solve::State);
+                    // There is a way back where a state was good before.
+                    residual = if self.best.is_some() { self.tried(condensed)? } else { condensed? };
+                }
+                let swept = residual.relative();
+                if !goal.finest && swept <= stop {
+                    // Good enough to go on from.
+                    if !changed.is_empty() {
+                        self.step(&mut changed, &mut step, count)?;
+                    }
+                    return Ok(Outcome::Converged);
+                }
+                // Rounding may be all that is left without being known beforehand: a gap far above the beam's own
+                // bending adds to it. A sweep that gains nothing then asks statics, too.
+                let done = swept <= stop.max(blur).max(residual.floor());
+                let near = swept <= T::of(NEAR) && swept > T::of(0.5) * last;
+                if done || near || rounds_since_best == IDLE {
+                    // Nothing changed, or as little as a sweep can tell: ask statics, on all elements.
+                    if done && !changed.is_empty() {
+                        // The step is all but free, and what was good enough is better after it.
+                        self.step(&mut changed, &mut step, count)?;
+                    }
+                    residual = self.settle(scale, stop, count)?;
+                    checked = true;
+                }
             }
             if rounds_since_best >= FULL_STEPS || !residual.is_finite() {
                 // Full steps do not help from here: down the energy from the best state, unless there are
@@ -355,14 +387,20 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             if slow > SLOW && self.is_tied() {
                 return Ok(Outcome::Stalled);
             }
-            changed = self.substitute(false).ok_or(Halt::Breakdown(self.meeting - 1))?;
-            count.iterations += 1;
-            if self.two_way() {
-                self.electric_rounded();
-                changed = self.changed();
-            }
+            self.step(&mut changed, &mut step, count)?;
         }
         Ok(Outcome::Stalled)
+    }
+
+    /// One full step: the new state, and u and q to it; which elements it changes, and by how much it moves the beam.
+    fn step(&mut self, changed: &mut Range<usize>, moved: &mut T, count: &mut Count) -> Result<(), Halt> {
+        *moved = self.substitute(false).ok_or(Halt::Breakdown(self.meeting - 1))?;
+        count.iterations += 1;
+        if self.two_way() {
+            self.electric_rounded();
+        }
+        *changed = self.changed(false);
+        Ok(())
     }
 
     /// From the current state, steps that lower the energy, each cut to where it is least, until the
@@ -655,7 +693,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     /// what is better.
     pub(crate) fn refine(&mut self, count: &mut Count) -> Result<(), Halt> {
         let Some((_, best)) = self.best else { return Ok(()) };
-        if best.relative() <= T::of(128.0) * T::epsilon() {
+        if best.relative() <= (T::of(128.0) * T::epsilon()).max(best.floor()) {
             return Ok(());
         }
         let refined = self.rejoin(T::one(), count).and_then(|open| {
@@ -862,10 +900,10 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         if residual.is_finite() { Ok(residual) } else { Err(Halt::Breakdown(0)) }
     }
 
-    /// Back substitution from the meeting point to both ends: the new state beside the best one, and the
-    /// elements whose matrices it changes. `None` if the parts cannot be joined.
+    /// Back substitution from the meeting point to both ends: the new state beside the best one; by how much it
+    /// changes an element's moments, over the largest of all. `None` if the parts cannot be joined.
     #[inline(never)]
-    fn substitute(&mut self, step: bool) -> Option<Range<usize>> {
+    fn substitute(&mut self, step: bool) -> Option<T> {
         let current = self.current;
         let meeting = self.meeting;
         let (west, east) = self.places.split_at_mut(meeting);
@@ -891,10 +929,12 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             _ => self.current,
         };
         let mut near = d;
-        let mut size = T::zero();
+        let (mut size, mut moved) = (T::zero(), T::zero());
         for Place { element, work } in west.iter_mut().rev() {
             let (e, far) = work.factor.substitute(near, element.h);
-            work.states[target] = work.states[current].then(step, e, near);
+            let before = work.states[current];
+            work.states[target] = before.then(step, e, near);
+            moved = larger(moved, element.moments(element.bending.times(work.states[target].e - before.e)));
             size = larger(size, element.largest_moment(work.states[target].e));
             near = if M::Gap::PRESENT && !step { far + element.gap.kink::<T>() } else { far };
         }
@@ -906,17 +946,19 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             let (e, far) = work.factor.substitute(near, -element.h);
             // e = -T e^
             let e = -Bending::carry(element.h, e);
-            work.states[target] = work.states[current].then(step, e, far);
+            let before = work.states[current];
+            work.states[target] = before.then(step, e, far);
+            moved = larger(moved, element.moments(element.bending.times(work.states[target].e - before.e)));
             size = larger(size, element.largest_moment(work.states[target].e));
             near = far;
         }
         (self.current, self.size) = (target, size);
-        Some(if self.two_way() { 0..self.places.len() } else { self.changed() })
+        Some(Residual::over(moved, size))
     }
 
     /// From the first to the last element whose matrix the current state changes, or whose part in the
-    /// right-hand side.
-    pub(crate) fn changed(&self) -> Range<usize> {
+    /// right-hand side; `rescaled`: or that touches.
+    pub(crate) fn changed(&self, rescaled: bool) -> Range<usize> {
         let mut changed = self.places.len()..0;
         if !M::Law::PRESENT && !M::Mu1::PRESENT {
             return 0..0;
@@ -928,7 +970,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             let q = onto.as_ref().map(|ratio| || electric::potential(element, node, &work.node, ratio));
             let eta = Motion::new(element.h, e, d).cubic();
             let touch = Touch::of(model, element, &eta, q);
-            if touch == Touch::Mixed || touch != work.touch {
+            if touch == Touch::Mixed || touch != work.touch || (rescaled && touch != Touch::Free) {
                 changed = changed.start.min(i)..i + 1;
             }
             node = &work.node;
@@ -975,6 +1017,12 @@ const POLISHINGS: usize = 6;
 
 /// Residual of a sweep that may be all rounding: if the next one is not better, statics is asked.
 const NEAR: f64 = 1e-7;
+
+/// Change of the moments by a step after which statics is asked whether it was the last.
+const SHORT: f64 = 1e-3;
+
+/// Residual from which the next Newton step leaves its square.
+const QUADRATIC: f64 = 1e-6;
 
 /// Rounds that may fall short of a tenth of the residual before where the potential acts on bending, until the
 /// monolithic method takes over.
