@@ -455,7 +455,7 @@ mod tests {
         q: &Cubic<f64>,
     ) -> [f64; 4] {
         let motion = motion(element.h, eta);
-        let contact = Contact::at(model, element, &motion, || *q, 1.0).unwrap();
+        let contact = Contact::at(model, element, &motion, Some(|| *q), 1.0).unwrap();
         let (e, d) = contact.force(&motion, element.h);
         [e.x, e.y, d.x, d.y]
     }
@@ -502,7 +502,7 @@ mod tests {
             eta.0.iter_mut().zip(along.0).for_each(|(c, a)| *c += step * a);
             forces(model, &element, &eta, q)
         };
-        let contact = Contact::at(model, &element, &motion(h, eta), || *q, 1.0).unwrap();
+        let contact = Contact::at(model, &element, &motion(h, eta), Some(|| *q), 1.0).unwrap();
         let (ee, er, rr) = contact.tangent(h);
         let motion = motion(h, along);
         let (fe, fd) = (ee.times(motion.e) + er * motion.d, er.transpose() * motion.e + rr.times(motion.d));
@@ -595,7 +595,7 @@ mod tests {
                 let q = Cubic([level * (height + 1e-9), level * 0.3, level * 0.2, level * 0.1]);
                 let closed = Contact::at(&model, &element, &motion, Some(|| q), 1.0).unwrap();
                 prop_assert_eq!(closed.touch, touch);
-                let split = Contact::split(&model, &element, &eta, &q, 1.0, Tangent::Whole).unwrap();
+                let split = Contact::split(&model, &element, &eta, Some(&q), 1.0, Tangent::Whole).unwrap();
                 for (closed, split) in closed.stiffness.iter().zip(split.stiffness) {
                     prop_assert!((closed - split).abs() < 1e-13 * (7.0 + 4.0));
                 }
@@ -608,7 +608,7 @@ mod tests {
             let element = self::element(&plain, h);
             let closed = Contact::at(&plain, &element, &motion, Some(Cubic::default), 0.25).unwrap();
             prop_assert_eq!(closed.touch, Touch::Full);
-            let split = Contact::split(&plain, &element, &eta, &Cubic::default(), 0.25, Tangent::Whole).unwrap();
+            let split = Contact::split(&plain, &element, &eta, None, 0.25, Tangent::Whole).unwrap();
             for (closed, split) in closed.stiffness.iter().zip(split.stiffness) {
                 prop_assert!((closed - split).abs() < 1e-13 * 7.0);
             }

@@ -693,7 +693,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     /// what is better.
     pub(crate) fn refine(&mut self, count: &mut Count) -> Result<(), Halt> {
         let Some((_, best)) = self.best else { return Ok(()) };
-        if best.relative() <= (T::of(128.0) * T::epsilon()).max(best.floor()) {
+        if best.relative() <= T::of(128.0) * T::epsilon() {
             return Ok(());
         }
         let refined = self.rejoin(T::one(), count).and_then(|open| {
