@@ -89,30 +89,27 @@ pub(crate) enum Tangent {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Contact<T> {
     pub(crate) touch: Touch,
-    /// Integrals over t of the tangent stiffness times t^j.
-    stiffness: [T; 7],
-    /// Integrals over t of (tangent stiffness . eta - force) times t^j: zero for a linear law.
-    offset: [T; 4],
+    force: Integrals<T>,
+}
+
+/// What the force of a contact is made of.
+#[derive(Clone, Copy, Debug)]
+enum Integrals<T> {
+    None,
+    /// One stiffness everywhere.
+    Uniform(T),
+    Moments {
+        /// Integrals over t of the tangent stiffness times t^j.
+        stiffness: [T; 7],
+        /// Integrals over t of (tangent stiffness . eta - force) times t^j: zero for a linear law.
+        offset: [T; 4],
+    },
 }
 
 /// At most three crossings each of eta = 0, eta = M, q = M, q = -M, and two turning points.
 pub(crate) type Splits<T> = ArrayVec<T, 14>;
 
 impl<T: Real> Contact<T> {
-    const FREE: fn() -> Self =
-        || Self { touch: Touch::Free, stiffness: [T::zero(); 7], offset: [T::zero(); 4] };
-
-    /// The whole element in contact with one stiffness k: integrals of k t^j.
-    #[inline(always)]
-    fn full(touch: Touch, k: T) -> Self {
-        let share = |j: f64| k * T::of(1.0 / (j + 1.0));
-        Self {
-            touch,
-            stiffness: [k, share(1.0), share(2.0), share(3.0), share(4.0), share(5.0), share(6.0)],
-            offset: [T::zero(); 4],
-        }
-    }
-
     /// Linearises the contact of `element` at `motion`, with the potential `q`, if it acts, and the law scaled by
     /// `scale` (1, but for the continuation in the stiffness).
     #[inline(always)]
@@ -124,22 +121,23 @@ impl<T: Real> Contact<T> {
         scale: T,
     ) -> Result<Self, Fault> {
         if !M::Law::PRESENT && !M::Mu1::PRESENT {
-            return Ok(Self::FREE());
+            return Ok(Self { touch: Touch::Free, force: Integrals::None });
         }
         let eta = motion.cubic();
         let touch = Touch::of(model, element, &eta, q.as_ref());
         let stiffness = scale * element.law.mean();
         let drive = || element.mu1.mean() * model.conduction().potential_truncation;
-        match touch {
-            Touch::Free => Ok(Self::FREE()),
-            Touch::Full => Ok(Self::full(touch, stiffness)),
-            Touch::High => Ok(Self::full(touch, stiffness + drive())),
-            Touch::Low => Ok(Self::full(touch, stiffness - drive())),
+        let force = match touch {
+            Touch::Free => Integrals::None,
+            Touch::Full => Integrals::Uniform(stiffness),
+            Touch::High => Integrals::Uniform(stiffness + drive()),
+            Touch::Low => Integrals::Uniform(stiffness - drive()),
             Touch::Mixed => {
                 let q = q.filter(|_| element.conducts_onto()).map(|q| q());
-                Self::split(model, element, &eta, q.as_ref(), scale, Tangent::Whole)
+                return Self::split(model, element, &eta, q.as_ref(), scale, Tangent::Whole);
             }
-        }
+        };
+        Ok(Self { touch, force })
     }
 
     /// As [`Contact::at`], with [`Tangent::Nondecreasing`].
@@ -167,7 +165,7 @@ impl<T: Real> Contact<T> {
         let bounds = model.conduction();
         let (most, most_q) = (bounds.truncation, bounds.potential_truncation);
         let mut splits = kinks(model, eta, q);
-        let mut contact = Self { touch: Touch::Mixed, ..Self::FREE() };
+        let (mut stiffness, mut offset) = ([T::zero(); 7], [T::zero(); 4]);
         touching(eta, &mut splits).try_for_each(|(t, weight)| {
             let r = eta.at(t);
             if r <= T::zero() {
@@ -189,17 +187,14 @@ impl<T: Real> Contact<T> {
                     tangent = tangent + drive * slope;
                 }
             }
-            add_moments(&mut contact.stiffness, t, weight * tangent);
-            add_moments(&mut contact.offset, t, weight * (tangent * r - force));
+            add_moments(&mut stiffness, t, weight * tangent);
+            add_moments(&mut offset, t, weight * (tangent * r - force));
             Ok(())
         })?;
-        Ok(contact)
+        Ok(Self { touch: Touch::Mixed, force: Integrals::Moments { stiffness, offset } })
     }
 
     /// The element's energy in (e, d): bending about the gap's own bend, loads, and this contact.
-    ///
-    /// With the shape functions 3 t^2 - 2 t^3, h (t^2 - t^3) of e and 1, -h t of d the matrices are
-    /// combinations of the stiffness moments.
     #[inline(always)]
     pub(crate) fn stamp<M: Model<T>>(&self, element: &Element<T, M>) -> Stamp<T, Bending> {
         let (mut ee, mut er, mut rr) = (element.bending, T::Mat2::ZERO, Symmetric::default());
@@ -207,13 +202,12 @@ impl<T: Real> Contact<T> {
         if M::Gap::PRESENT {
             fe = fe - element.bending.times(element.gap.bend::<T>());
         }
-        if (M::Law::PRESENT || M::Mu1::PRESENT) && self.touch != Touch::Free {
-            let tangent = self.tangent(element.h);
-            ee = ee + tangent.0;
-            er = tangent.1;
-            rr = tangent.2;
-            if self.touch == Touch::Mixed {
-                let (oe, or) = work::<T>(element.h, self.offset);
+        if (M::Law::PRESENT || M::Mu1::PRESENT)
+            && let Some(tangent) = self.tangent(element.h)
+        {
+            (ee, er, rr) = (ee + tangent.0, tangent.1, tangent.2);
+            if let Integrals::Moments { offset, .. } = self.force {
+                let (oe, or) = work::<T>(element.h, offset);
                 fe += oe;
                 fr += or;
             }
@@ -221,32 +215,47 @@ impl<T: Real> Contact<T> {
         Stamp { ee, er, re: T::Mat2::ZERO, rr, fe, fr }
     }
 
-    /// Tangent blocks ee, er, rr.
+    /// Tangent blocks ee, er, rr, if there is contact.
+    ///
+    /// With the shape functions 3 t^2 - 2 t^3, h (t^2 - t^3) of e and 1, -h t of d the matrices are
+    /// combinations of the stiffness moments.
     #[inline(always)]
-    fn tangent(&self, h: T) -> (Symmetric<T>, T::Mat2, Symmetric<T>) {
-        let [k0, k1, k2, k3, k4, k5, k6] = self.stiffness;
+    fn tangent(&self, h: T) -> Option<(Symmetric<T>, T::Mat2, Symmetric<T>)> {
         let n = |x: f64| T::of(x);
         let h2 = h * h;
         let h3 = h2 * h;
-        let ee = Symmetric::of(
-            h * (n(9.0) * k4 - n(12.0) * k5 + n(4.0) * k6),
-            h2 * (n(3.0) * k4 - n(5.0) * k5 + n(2.0) * k6),
-            h3 * (k4 - n(2.0) * k5 + k6),
-        );
-        let er = T::Mat2::of([
-            [h * (n(3.0) * k2 - n(2.0) * k3), h2 * (k2 - k3)],
-            [-(h2 * (n(3.0) * k3 - n(2.0) * k4)), -(h3 * (k3 - k4))],
-        ]);
-        let rr = Symmetric::of(h * k0, -(h2 * k1), h3 * k2);
-        (ee, er, rr)
+        match self.force {
+            Integrals::None => None,
+            Integrals::Uniform(k) => {
+                let (k1, k2, k3) = (k * h, k * h2, k * h3);
+                let ee = Symmetric::of(k1 * n(13.0 / 35.0), k2 * n(11.0 / 210.0), k3 * n(1.0 / 105.0));
+                let er = T::Mat2::of([
+                    [k1 * n(1.0 / 2.0), k2 * n(1.0 / 12.0)],
+                    [k2 * n(-7.0 / 20.0), k3 * n(-1.0 / 20.0)],
+                ]);
+                Some((ee, er, Symmetric::of(k1, k2 * n(-1.0 / 2.0), k3 * n(1.0 / 3.0))))
+            }
+            Integrals::Moments { stiffness: [k0, k1, k2, k3, k4, k5, k6], .. } => {
+                let ee = Symmetric::of(
+                    h * (n(9.0) * k4 - n(12.0) * k5 + n(4.0) * k6),
+                    h2 * (n(3.0) * k4 - n(5.0) * k5 + n(2.0) * k6),
+                    h3 * (k4 - n(2.0) * k5 + k6),
+                );
+                let er = T::Mat2::of([
+                    [h * (n(3.0) * k2 - n(2.0) * k3), h2 * (k2 - k3)],
+                    [-(h2 * (n(3.0) * k3 - n(2.0) * k4)), -(h3 * (k3 - k4))],
+                ]);
+                Some((ee, er, Symmetric::of(h * k0, -(h2 * k1), h3 * k2)))
+            }
+        }
     }
 
     /// The size of what cancels in the contact force `cd`: where the element is in contact in part, a stiff
     /// foundation sees the rounding of all of its penetration.
     #[inline(always)]
     pub(crate) fn size(&self, motion: &Motion<T>, cd: T::Vec2, h: T) -> T {
-        if self.touch == Touch::Mixed {
-            let terms = self.stiffness.iter().zip(motion.cubic().0);
+        if let Integrals::Moments { stiffness, .. } = self.force {
+            let terms = stiffness.iter().zip(motion.cubic().0);
             h * terms.fold(T::zero(), |sum, (moment, c)| sum + (*moment * c).abs())
         } else {
             cd.x().abs()
@@ -256,13 +265,16 @@ impl<T: Real> Contact<T> {
     /// Contact force on (e, d) at the state it was linearised at.
     #[inline(always)]
     pub(crate) fn force(&self, motion: &Motion<T>, h: T) -> (T::Vec2, T::Vec2) {
-        if self.touch == Touch::Free {
+        let Some((ee, er, rr)) = self.tangent(h) else {
             return (T::Vec2::default(), T::Vec2::default());
-        }
-        let (ee, er, rr) = self.tangent(h);
-        let (oe, or) = work::<T>(h, self.offset);
+        };
         let (e, d) = (motion.e, motion.d);
-        (ee.times(e) + er * d - oe, er.turned() * e + rr.times(d) - or)
+        let (on_e, on_d) = (ee.times(e) + er * d, er.turned() * e + rr.times(d));
+        if let Integrals::Moments { offset, .. } = self.force {
+            let (oe, or) = work::<T>(h, offset);
+            return (on_e - oe, on_d - or);
+        }
+        (on_e, on_d)
     }
 }
 
@@ -359,7 +371,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
     use super::*;
     use crate::{Beam, Conduction, Foundation, Linear, Load, Polynomial, Power, Scene};
-    use glam::DVec2;
+    use glam::{DMat2, DVec2};
     use proptest::prelude::*;
     use std::vec;
     use std::vec::Vec;
@@ -503,7 +515,8 @@ mod tests {
             forces(model, &element, &eta, q)
         };
         let contact = Contact::at(model, &element, &motion(h, eta), Some(|| *q), 1.0).unwrap();
-        let (ee, er, rr) = contact.tangent(h);
+        let (ee, er, rr) =
+            contact.tangent(h).unwrap_or((Symmetric::default(), DMat2::ZERO, Symmetric::default()));
         let motion = motion(h, along);
         let (fe, fd) = (ee.times(motion.e) + er * motion.d, er.transpose() * motion.e + rr.times(motion.d));
         let sizes = [h, h * h, h, h * h].map(|unit| unit * stiffness);
@@ -707,7 +720,9 @@ mod tests {
         let element = element(&model, 0.3);
         let q = Cubic([0.1, 0.2, 0.0, 0.0]);
         let motion = motion(0.3, &Cubic([0.3, -0.5, 0.0, 0.0]));
-        let at = |scale| Contact::at(&model, &element, &motion, Some(|| q), scale).unwrap().stiffness[0];
+        let at = |scale| {
+            Contact::at(&model, &element, &motion, Some(|| q), scale).unwrap().tangent(1.0).unwrap().2.xx
+        };
         let plain = at(1.0) - at(0.0);
         assert!((at(0.5) - at(0.0) - 0.5 * plain).abs() < 1e-14);
         assert!((plain - 7.0 * 0.6).abs() < 1e-14);

@@ -56,9 +56,6 @@ use core::ops::Range;
 pub(crate) struct Residual<T> {
     /// Largest difference of the moments \[N m\].
     mismatch: T,
-    /// Largest difference of the forces, times the length \[N m\]: how the moments would differ farther on.
-    /// In it is rounding of e times 1/h.
-    lever: T,
     /// Largest moment \[N m\].
     size: T,
     /// Sum of the sizes of loads and contact forces, times the length \[N m\].
@@ -69,7 +66,7 @@ pub(crate) struct Residual<T> {
 
 impl<T: Real> Residual<T> {
     fn none() -> Self {
-        Self { mismatch: T::zero(), lever: T::zero(), size: T::zero(), load: T::zero(), sum: T::zero() }
+        Self { mismatch: T::zero(), size: T::zero(), load: T::zero(), sum: T::zero() }
     }
 
     /// What an element's force and moment at one end are off by; h leads to its other end.
@@ -87,19 +84,9 @@ impl<T: Real> Residual<T> {
         self.size = larger(larger(self.size, held.y().abs()), far.abs());
     }
 
-    /// Counts a force that is out of balance with the lever `length`.
-    #[inline(always)]
-    fn see_force(&mut self, gap: T, length: T) {
-        self.lever = larger(self.lever, gap.abs() * length);
-    }
-
     /// The relative residual; zero where there is no moment at all.
     pub(crate) fn relative(&self) -> T {
-        Self::over(self.mismatch.max(self.lever), self.size)
-    }
-
-    fn over(mismatch: T, size: T) -> T {
-        if mismatch == T::zero() { T::zero() } else { mismatch / size }
+        if self.mismatch == T::zero() { T::zero() } else { self.mismatch / self.size }
     }
 
     /// What rounding alone may leave: some units in the last place of the moment and of the sums of forces
@@ -113,7 +100,7 @@ impl<T: Real> Residual<T> {
     }
 
     fn is_finite(&self) -> bool {
-        (self.mismatch + self.lever + self.size + self.sum).is_finite()
+        (self.mismatch + self.size + self.sum).is_finite()
     }
 }
 
@@ -183,8 +170,6 @@ pub(crate) struct Level<'a, 'b, T: Real, M: Model<T>> {
     pub(crate) fresh: bool,
     /// Elements whose law the continuation in the stiffness scales.
     scaled: Range<usize>,
-    /// The largest moment of the current state, as the last substitution saw it \[N m\].
-    size: T,
 }
 
 /// What a sweep solves for.
@@ -226,8 +211,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     pub(crate) fn new(context: &'b Context<'a, T, M>, places: &'b mut [Place<T, M>]) -> Self {
         let meeting = (places.len() / 2).max(1);
         let scaled = 0..places.len();
-        let (node, size) = (Node::default(), T::zero());
-        Self { context, places, node, current: 0, best: None, meeting, fresh: false, scaled, size }
+        Self { context, places, node: Node::default(), current: 0, best: None, meeting, fresh: false, scaled }
     }
 
     /// Is bending in a loop with the potential?
@@ -296,6 +280,17 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         Ok(self.changed(false))
     }
 
+    /// Is the current state the solution already?
+    pub(crate) fn holds(&mut self, stop: T, count: &mut Count) -> Result<Outcome, Halt> {
+        let residual = self.check(T::one(), count)?;
+        self.best = Some((self.current, residual));
+        Ok(if residual.relative() <= stop { Outcome::Converged } else { Outcome::Stalled })
+    }
+
+    /// Full Newton steps, and where these do not help steps down the energy.
+    ///
+    /// How far a step moves the beam says how far off the state before it was. Only statics can say that a solve has
+    /// converged; it is asked, on all elements, once a step is so short that it may have been the last.
     fn descend(
         &mut self,
         mut changed: Range<usize>,
@@ -311,70 +306,57 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         let mut least = T::infinity();
         let mut rounds_since_best = 0;
         let (mut slow, mut last) = (0, T::infinity());
-        // What rounding may leave of a sweep's residual: 1/h times that of e is in the forces.
+        let mut short = T::of(SHORT);
+        // What rounding may leave of a step.
         let blur = T::of(64.0) * T::epsilon() * T::from(self.places.len()).unwrap_or(T::one());
-        let mut step = T::infinity();
-        for round in 0..=most {
+        for _ in 0..=most {
             let mut residual = Residual::none();
-            // Only statics can say that a solve has converged.
-            let mut checked = false;
-            if goal.finest && (last <= T::of(QUADRATIC) || (round == 1 && step <= T::of(SHORT))) {
-                // The step before was so short that it may have been the last: statics costs less than a sweep.
-                let balanced = self.check(scale, count);
-                residual = self.tried(balanced)?;
-                checked = residual.relative() <= stop;
+            if !changed.is_empty() {
+                let stepped = self.step(&changed, scale, count);
+                // There is a way back where a state was good before.
+                residual = if self.best.is_some() { self.tried(stepped)? } else { stepped? };
+                changed = self.changed(false);
             }
-            if !checked {
-                residual = Residual::none();
-                if !changed.is_empty() {
-                    let swept = self.extent(&changed);
-                    count.spend(swept.len())?;
-                    let condensed = self.condense(swept, scale, Solve::State);
-                    // There is a way back where a state was good before.
-                    residual = if self.best.is_some() { self.tried(condensed)? } else { condensed? };
+            let moved = residual.relative();
+            if !goal.finest && moved <= stop {
+                return Ok(Outcome::Converged);
+            }
+            let done = moved <= stop.max(blur);
+            // Rounding may be all that is left without being known beforehand: a gap far above the beam's own
+            // bending adds to it. Steps that gain nothing then ask statics, too.
+            let near = moved <= T::of(NEAR) && moved > T::of(0.5) * last;
+            let mut checked = done || near || rounds_since_best == IDLE;
+            if checked {
+                residual = self.settle(scale, stop, count)?;
+            } else if goal.finest && moved <= short {
+                let balanced = self.check(scale, count);
+                let balanced = self.tried(balanced)?;
+                checked = balanced.relative() <= stop;
+                // Not twice in vain: the steps have to grow far shorter before it is asked again.
+                short = (T::of(1e-3) * moved).min(T::of(QUADRATIC));
+                if checked {
+                    residual = balanced;
                 }
-                let swept = residual.relative();
-                if !goal.finest && swept <= stop {
-                    // Good enough to go on from.
-                    if !changed.is_empty() {
-                        self.step(&mut changed, &mut step, count)?;
-                    }
-                    return Ok(Outcome::Converged);
-                }
-                // Rounding may be all that is left without being known beforehand: a gap far above the beam's own
-                // bending adds to it. A sweep that gains nothing then asks statics, too.
-                let done = swept <= stop.max(blur).max(residual.floor());
-                let near = swept <= T::of(NEAR) && swept > T::of(0.5) * last;
-                if done || near || rounds_since_best == IDLE {
-                    // Nothing changed, or as little as a sweep can tell: ask statics, on all elements.
-                    if done && !changed.is_empty() {
-                        // The step is all but free, and what was good enough is better after it.
-                        self.step(&mut changed, &mut step, count)?;
-                    }
-                    residual = self.settle(scale, stop, count)?;
-                    checked = true;
-                }
+            }
+            if checked && residual.relative() <= stop {
+                self.best = Some((self.current, residual));
+                return Ok(Outcome::Converged);
             }
             if rounds_since_best >= FULL_STEPS || !residual.is_finite() {
-                // Full steps do not help from here: down the energy from the best state, unless there are
-                // better ways to start, or no energy.
+                // Full steps do not help from here: down the energy, unless there are better ways to start, or no
+                // energy.
                 if most < usize::MAX || !self.convex() {
                     return Ok(Outcome::Stalled);
                 }
                 self.keep_best();
                 match self.lower(T::of(0.5) * least, scale, stop, count)? {
+                    Some(lower) if lower.relative() <= stop => return Ok(Outcome::Converged),
                     Some(lower) => residual = lower,
                     None => return Ok(Outcome::Floor),
                 }
-                checked = true;
+                changed = self.changed(false);
             }
             let relative = residual.relative();
-            if self.best.is_none_or(|(_, best)| relative < best.relative()) {
-                self.best = Some((self.current, residual));
-            }
-            if checked && relative <= stop {
-                return Ok(Outcome::Converged);
-            }
             let halved = relative < T::of(0.5) * least;
             rounds_since_best = if halved { 0 } else { rounds_since_best + 1 };
             least = least.min(relative);
@@ -387,20 +369,25 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             if slow > SLOW && self.is_tied() {
                 return Ok(Outcome::Stalled);
             }
-            self.step(&mut changed, &mut step, count)?;
         }
         Ok(Outcome::Stalled)
     }
 
-    /// One full step: the new state, and u and q to it; which elements it changes, and by how much it moves the beam.
-    fn step(&mut self, changed: &mut Range<usize>, moved: &mut T, count: &mut Count) -> Result<(), Halt> {
-        *moved = self.substitute(false).ok_or(Halt::Breakdown(self.meeting - 1))?;
+    /// One full step, where the elements `changed` have changed, and u and q after it. By how much it moved the beam:
+    /// the change of the moments. The state before it is kept as the best so far.
+    fn step(&mut self, changed: &Range<usize>, scale: T, count: &mut Count) -> Result<Residual<T>, Halt> {
+        let swept = self.extent(changed);
+        count.spend(swept.len())?;
+        self.condense(swept, scale, Solve::State)?;
+        let before = self.current;
+        self.best = None;
+        let residual = self.substitute(false).ok_or(Halt::Breakdown(self.meeting - 1))?;
+        self.best = Some((before, residual));
         count.iterations += 1;
         if self.two_way() {
             self.electric_rounded();
         }
-        *changed = self.changed(false);
-        Ok(())
+        Ok(residual)
     }
 
     /// From the current state, steps that lower the energy, each cut to where it is least, until the
@@ -739,9 +726,9 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     }
 
     /// Linearises the elements of `swept` at the current state and condenses them, from both sides towards
-    /// the meeting point; the residual of the state there.
+    /// the meeting point.
     #[inline(never)]
-    fn condense(&mut self, swept: Range<usize>, scale: T, solve: Solve<T>) -> Result<Residual<T>, Halt> {
+    fn condense(&mut self, swept: Range<usize>, scale: T, solve: Solve<T>) -> Result<(), Halt> {
         let Context { model, ref onto, .. } = *self.context;
         let scale = self.scaling(scale);
         let (mut left, mut right) = (self.context.left, self.context.right);
@@ -751,100 +738,64 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         let step = solve != Solve::State;
         let whole = swept.len() == self.places.len();
         let (current, meeting, last) = (self.current, self.meeting, self.places.len() - 1);
-        let length = model.length();
-        let mut residual = Residual::none();
         let (mut from_left, mut from_right) = (swept.start.min(meeting), swept.end.max(meeting));
         let mut west = match from_left.checked_sub(1) {
             Some(before) => self.places[before].work.condensed,
             None => left.condensed,
         };
         let mut east = self.places.get(from_right).map_or(right.condensed, |p| p.work.condensed);
+        let node = |places: &[Place<T, M>], i: usize| match i.checked_sub(1) {
+            Some(before) => places[before].work.node,
+            None => self.node,
+        };
+        let stamp = |i: usize, left: &Node<T, M>, Place { element, work }: &mut Place<T, M>| {
+            let (contact, _) = linearise(model, element, work, left, current, onto, scale(i))
+                .map_err(|fault| Halt::Law(i, fault))?;
+            work.touch = contact.touch;
+            let mut stamp = contact.stamp(element);
+            if step {
+                (stamp.fe, stamp.fr) = (-work.open, T::Vec2::default());
+            }
+            Ok(stamp)
+        };
         // The two chains do not wait for each other, so they are interleaved.
         while from_left < meeting || from_right > meeting {
             if from_left < meeting {
                 let i = from_left;
-                let (node, far) = match i.checked_sub(1).map(|before| &self.places[before].work) {
-                    Some(before) => (before.node, before.states[current].d),
-                    None => (self.node, T::Vec2::default()),
-                };
+                let before = node(self.places, i);
+                let stamp = stamp(i, &before, &mut self.places[i])?;
                 let Place { element, work } = &mut self.places[i];
                 let h = element.h;
-                let (contact, motion) = linearise(model, element, work, &node, current, onto, scale(i))
-                    .map_err(|fault| Halt::Law(i, fault))?;
-                let (ce, cd) = contact.force(&motion, h);
-                let held = element.deforming_force(motion.e) + ce;
-                if i > 0 {
-                    let gap = beyond(west.force(far) + held, west.rounding(far), held, h);
-                    residual.see(gap, h);
-                    residual.see_force(gap.x(), length);
-                }
-                residual.measure(held, h);
-                residual.load = residual.load + contact.size(&motion, cd, h) + element.fr.x().abs();
-                let mut stamp = contact.stamp(element);
-                if step {
-                    (stamp.fe, stamp.fr) = (-work.open, T::Vec2::default());
-                } else if M::Gap::PRESENT {
+                if M::Gap::PRESENT && !step {
                     west = west.shift(element.gap.kink::<T>());
                 }
                 let absorbed = if i == 0 { left.join(&west, &stamp, h) } else { west.absorb(&stamp, h) };
                 (west, work.factor) = absorbed.ok_or(Halt::Breakdown(i))?;
-                (work.condensed, work.touch) = (west, contact.touch);
+                work.condensed = west;
                 from_left += 1;
             }
             if from_right > meeting {
                 from_right -= 1;
                 let i = from_right;
-                let node = match i.checked_sub(1) {
-                    Some(before) => self.places[before].work.node,
-                    None => self.node,
-                };
                 if M::Gap::PRESENT
                     && !step
                     && let Some(next) = self.places.get(i + 1)
                 {
                     east = east.shift(-next.element.gap.kink::<T>());
                 }
+                let before = node(self.places, i);
+                let stamp = stamp(i, &before, &mut self.places[i])?;
                 let Place { element, work } = &mut self.places[i];
                 let h = element.h;
-                let (contact, motion) = linearise(model, element, work, &node, current, onto, scale(i))
-                    .map_err(|fault| Halt::Law(i, fault))?;
-                let (ce, cd) = contact.force(&motion, h);
-                let deforming = element.deforming_force(motion.e) + ce;
-                let held = cd - element.fr - Bending::carry_back(h, deforming);
-                if i < last {
-                    let gap = east.force(motion.d) + held;
-                    let gap = beyond(gap, east.rounding(motion.d), held, h);
-                    residual.see(gap, -h);
-                    residual.see_force(gap.x(), length);
-                }
-                residual.measure(held, -h);
-                residual.load = residual.load + contact.size(&motion, cd, h) + element.fr.x().abs();
-                let mut stamp = contact.stamp(element);
-                if step {
-                    (stamp.fe, stamp.fr) = (-work.open, T::Vec2::default());
-                }
                 let stamp = stamp.mirrored(h);
                 let absorbed =
                     if i == last { right.join(&east, &stamp, -h) } else { east.absorb(&stamp, -h) };
                 (east, work.factor) = absorbed.ok_or(Halt::Breakdown(i))?;
-                (work.condensed, work.touch) = (east, contact.touch);
+                work.condensed = east;
             }
         }
-        if let Some(Place { element, work }) = self.places.get(meeting) {
-            // Both parts against each other, at the node where they meet.
-            let d = self.places[meeting - 1].work.states[current].d;
-            let east = work.condensed.shift(-element.gap.kink::<T>());
-            let gap = self.places[meeting - 1].work.condensed.force(d) + east.force(d);
-            residual.see(gap, T::zero());
-            residual.see_force(gap.x(), length);
-        }
         self.fresh = !step && (self.fresh || whole);
-        residual.load = residual.load * length;
-        residual.size = residual.size.max(self.context.quiet);
-        if !whole {
-            residual.size = residual.size.max(self.size);
-        }
-        if residual.is_finite() { Ok(residual) } else { Err(Halt::Breakdown(meeting - 1)) }
+        Ok(())
     }
 
     /// The residual of the current state by statics, on all elements.
@@ -900,10 +851,10 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         if residual.is_finite() { Ok(residual) } else { Err(Halt::Breakdown(0)) }
     }
 
-    /// Back substitution from the meeting point to both ends: the new state beside the best one; by how much it
-    /// changes an element's moments, over the largest of all. `None` if the parts cannot be joined.
+    /// Back substitution from the meeting point to both ends: the new state beside the one before; by how much it
+    /// changes the elements' moments, which is what the one before was off by. `None` if the parts cannot be joined.
     #[inline(never)]
-    fn substitute(&mut self, step: bool) -> Option<T> {
+    fn substitute(&mut self, step: bool) -> Option<Residual<T>> {
         let current = self.current;
         let meeting = self.meeting;
         let (west, east) = self.places.split_at_mut(meeting);
@@ -923,19 +874,19 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             }
             None => self.context.right.close(&met)?,
         };
-        // The best state stays where it is; any other may be overwritten.
-        let target = match self.best {
-            Some((best, _)) if best == self.current => 1 - self.current,
-            _ => self.current,
-        };
+        let target = 1 - current;
         let mut near = d;
-        let (mut size, mut moved) = (T::zero(), T::zero());
+        let (mut size, mut mismatch, mut sum) = (T::zero(), T::zero(), T::zero());
+        let mut see = |element: &Element<T, M>, before: State<T>, after: State<T>| {
+            let moved = element.moments(element.bending.times(after.e - before.e));
+            (mismatch, sum) = (larger(mismatch, moved), sum + moved);
+            size = larger(size, element.largest_moment(after.e));
+        };
         for Place { element, work } in west.iter_mut().rev() {
             let (e, far) = work.factor.substitute(near, element.h);
             let before = work.states[current];
             work.states[target] = before.then(step, e, near);
-            moved = larger(moved, element.moments(element.bending.times(work.states[target].e - before.e)));
-            size = larger(size, element.largest_moment(work.states[target].e));
+            see(element, before, work.states[target]);
             near = if M::Gap::PRESENT && !step { far + element.gap.kink::<T>() } else { far };
         }
         let mut near = d;
@@ -948,12 +899,12 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             let e = -Bending::carry(element.h, e);
             let before = work.states[current];
             work.states[target] = before.then(step, e, far);
-            moved = larger(moved, element.moments(element.bending.times(work.states[target].e - before.e)));
-            size = larger(size, element.largest_moment(work.states[target].e));
+            see(element, before, work.states[target]);
             near = far;
         }
-        (self.current, self.size) = (target, size);
-        Some(Residual::over(moved, size))
+        self.current = target;
+        let size = size.max(self.context.quiet);
+        Some(Residual { mismatch, size, sum, ..Residual::none() })
     }
 
     /// From the first to the last element whose matrix the current state changes, or whose part in the
@@ -1000,16 +951,6 @@ fn linearise<T: Real, M: Model<T>>(
 #[inline(always)]
 fn larger<T: Real>(a: T, b: T) -> T {
     if b > a { b } else { a }
-}
-
-/// A difference of forces, less what rounding of its parts may leave of it: on one side `rounding`, on the
-/// other an element's force `held`, in which 1/h times its moment has cancelled.
-#[inline(always)]
-fn beyond<T: Real>(gap: T::Vec2, rounding: T::Vec2, held: T::Vec2, h: T) -> T::Vec2 {
-    let unit = T::of(16.0) * T::epsilon();
-    let moment = held.y().abs() + h * held.x().abs();
-    let rest = |gap: T, noise: T| larger(gap.abs() - unit * noise, T::zero()).copysign(gap);
-    T::Vec2::of(rest(gap.x(), rounding.x() + T::of(6.0) * moment / h), rest(gap.y(), rounding.y() + moment))
 }
 
 /// Increments taken one after the other, each from sweeps of its own.

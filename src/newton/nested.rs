@@ -25,9 +25,8 @@ const MERGED: usize = 4;
 const COARSEST: usize = 40;
 /// Meshes at most: 4^16 times the coarsest is more than any memory.
 const MOST_LEVELS: usize = 16;
-/// Relative residual of a sweep at which a coarser mesh, or a stage of the continuation, has done its part: the step
-/// after it is still taken.
-const ROUGH: f64 = 1e-2;
+/// Step after which a coarser mesh, or a stage of the continuation, has done its part.
+const ROUGH: f64 = 1e-3;
 /// Iterations granted to one stage or coarser mesh.
 const STAGE: usize = 15;
 /// Stages of the continuation closer than this factor are not tried.
@@ -397,8 +396,13 @@ pub(crate) fn follow<T: Real, M: Model<T>>(
     if context.onto.is_some() {
         level.electric();
     }
+    let mut outcome = Ok(Outcome::Stalled);
     if bounds(model) != last.bounds {
         changed = 0..elements;
+    } else if changed.is_empty() {
+        // The old solution may be the new one.
+        outcome = level.holds(settings.stop, &mut count);
+        changed = level.changed(false);
     } else {
         let touched = level.changed(false);
         if !touched.is_empty() {
@@ -407,7 +411,9 @@ pub(crate) fn follow<T: Real, M: Model<T>>(
     }
     // Not refined: a step for an increment would leave the condensed parts to be made anew.
     let goal = Goal { stop: settings.stop, finest: true };
-    let outcome = level.iterate_from(changed, T::one(), goal, 4 * STAGE, &mut count);
+    if outcome == Ok(Outcome::Stalled) {
+        outcome = level.iterate_from(changed, T::one(), goal, 4 * STAGE, &mut count);
+    }
     Some(level.answer(outcome, settings.stop, &count))
 }
 
