@@ -113,6 +113,12 @@ impl<T: Real, M: Model<T>> Flexibility<T, M> {
         (self.uq.integral(t), self.qq.integral(t))
     }
 
+    /// uq and qq, if they are the same on all of the element.
+    #[inline(always)]
+    fn constant(&self) -> Option<(T, T)> {
+        self.uq.constant().zip(self.qq.constant())
+    }
+
     /// Means over the element.
     #[inline(always)]
     pub(crate) fn mean(&self) -> Inverse<T> {
@@ -207,23 +213,32 @@ pub(crate) fn current<T: Real, M: Model<T>>(
     if side == Side::Below {
         return source;
     }
-    let mut see = |t: T, weight: T, r: T| {
-        let part = element.h * weight * element.mu2.at(t) * (r * r);
-        source.total = source.total + part;
-        let (stretch, charge) = element.flexibility.integral(t);
-        source.stretch = source.stretch + element.h * part * stretch;
-        source.charge = source.charge + element.h * part * charge;
-    };
-    if side == Side::Above && eta.side(most) == Side::Below {
+    let k = element.flexibility.constant();
+    if let (Side::Above, Some(mu2), Some((stretch, charge))) = (side, element.mu2.constant(), k)
+        && eta.side(most) == Side::Below
+    {
+        // mu2 and K^-1 stand before the integrals, which are of a polynomial that four points integrate.
+        let (mut square, mut lever) = (zero, zero);
         for (t, weight) in gauss::<POINTS>() {
-            let t = T::of(t);
-            see(t, T::of(weight), eta.at(t));
+            let r = eta.at(T::of(t));
+            square = square + T::of(weight) * (r * r);
+            lever = lever + T::of(weight * t) * (r * r);
         }
+        source.total = element.h * mu2 * square;
+        let lever = element.h * element.h * mu2 * lever;
+        (source.stretch, source.charge) = (lever * stretch, lever * charge);
         return source;
     }
     let mut splits: ArrayVec<T, 6> = ArrayVec::new();
     splits.extend(eta.crossings(zero));
     splits.extend(eta.crossings(most));
-    touching(&eta, &mut splits).for_each(|(t, weight)| see(t, weight, truncate_positive(eta.at(t), most).0));
+    touching(&eta, &mut splits).for_each(|(t, weight)| {
+        let r = truncate_positive(eta.at(t), most).0;
+        let part = element.h * weight * element.mu2.at(t) * (r * r);
+        source.total = source.total + part;
+        let (stretch, charge) = element.flexibility.integral(t);
+        source.stretch = source.stretch + element.h * part * stretch;
+        source.charge = source.charge + element.h * part * charge;
+    });
     source
 }

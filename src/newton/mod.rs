@@ -48,7 +48,7 @@ use crate::real::{Pair, Real, Sum};
 use crate::scene::Model;
 use crate::storage::{Node, Place, State, Work};
 use crate::sweep::pair::Bending;
-use crate::sweep::{Block, End};
+use crate::sweep::{Block, End, Stamp};
 use core::ops::Range;
 
 /// Differences between moments by deformation and by equilibrium, and what to compare them with.
@@ -267,7 +267,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
 
     /// The beam without its foundation's law, from a state that may be none: it need not satisfy the
     /// conditions at the ends.
-    pub(crate) fn free(&mut self, count: &mut Count) -> Result<Range<usize>, Halt> {
+    pub(crate) fn free(&mut self, count: &mut Count) -> Result<(), Halt> {
         let all = 0..self.places.len();
         self.best = None;
         if self.two_way() {
@@ -276,8 +276,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         count.spend(all.len())?;
         self.condense(all, T::zero(), Solve::State)?;
         count.iterations += 1;
-        self.substitute(false).ok_or(Halt::Breakdown(self.meeting - 1))?;
-        Ok(self.changed(false))
+        self.substitute(false).map(|_| ()).ok_or(Halt::Breakdown(self.meeting - 1))
     }
 
     /// Is the current state the solution already?
@@ -315,7 +314,6 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 let stepped = self.step(&changed, scale, count);
                 // There is a way back where a state was good before.
                 residual = if self.best.is_some() { self.tried(stepped)? } else { stepped? };
-                changed = self.changed(false);
             }
             let moved = residual.relative();
             if !goal.finest && moved <= stop {
@@ -337,6 +335,8 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 if checked {
                     residual = balanced;
                 }
+            } else if self.two_way() {
+                self.electric_rounded();
             }
             if checked && residual.relative() <= stop {
                 self.best = Some((self.current, residual));
@@ -354,7 +354,6 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                     Some(lower) => residual = lower,
                     None => return Ok(Outcome::Floor),
                 }
-                changed = self.changed(false);
             }
             let relative = residual.relative();
             let halved = relative < T::of(0.5) * least;
@@ -369,12 +368,13 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             if slow > SLOW && self.is_tied() {
                 return Ok(Outcome::Stalled);
             }
+            changed = self.changed(false);
         }
         Ok(Outcome::Stalled)
     }
 
-    /// One full step, where the elements `changed` have changed, and u and q after it. By how much it moved the beam:
-    /// the change of the moments. The state before it is kept as the best so far.
+    /// One full step, where the elements `changed` have changed. By how much it moved the beam: the change of the
+    /// moments. The state before it is kept as the best so far.
     fn step(&mut self, changed: &Range<usize>, scale: T, count: &mut Count) -> Result<Residual<T>, Halt> {
         let swept = self.extent(changed);
         count.spend(swept.len())?;
@@ -384,9 +384,6 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         let residual = self.substitute(false).ok_or(Halt::Breakdown(self.meeting - 1))?;
         self.best = Some((before, residual));
         count.iterations += 1;
-        if self.two_way() {
-            self.electric_rounded();
-        }
         Ok(residual)
     }
 
@@ -748,23 +745,14 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             Some(before) => places[before].work.node,
             None => self.node,
         };
-        let stamp = |i: usize, left: &Node<T, M>, Place { element, work }: &mut Place<T, M>| {
-            let (contact, _) = linearise(model, element, work, left, current, onto, scale(i))
-                .map_err(|fault| Halt::Law(i, fault))?;
-            work.touch = contact.touch;
-            let mut stamp = contact.stamp(element);
-            if step {
-                (stamp.fe, stamp.fr) = (-work.open, T::Vec2::default());
-            }
-            Ok(stamp)
-        };
         // The two chains do not wait for each other, so they are interleaved.
         while from_left < meeting || from_right > meeting {
             if from_left < meeting {
                 let i = from_left;
                 let before = node(self.places, i);
-                let stamp = stamp(i, &before, &mut self.places[i])?;
                 let Place { element, work } = &mut self.places[i];
+                let stamp = stamp(model, element, work, &before, current, onto, scale(i), step)
+                    .map_err(|fault| Halt::Law(i, fault))?;
                 let h = element.h;
                 if M::Gap::PRESENT && !step {
                     west = west.shift(element.gap.kink::<T>());
@@ -784,8 +772,9 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                     east = east.shift(-next.element.gap.kink::<T>());
                 }
                 let before = node(self.places, i);
-                let stamp = stamp(i, &before, &mut self.places[i])?;
                 let Place { element, work } = &mut self.places[i];
+                let stamp = stamp(model, element, work, &before, current, onto, scale(i), step)
+                    .map_err(|fault| Halt::Law(i, fault))?;
                 let h = element.h;
                 let stamp = stamp.mirrored(h);
                 let absorbed =
@@ -945,6 +934,29 @@ fn linearise<T: Real, M: Model<T>>(
     let motion = Motion::new(element.h, e, d);
     let q = ratio.as_ref().map(|ratio| || electric::potential(element, left, &work.node, ratio));
     Contact::at(model, element, &motion, q, scale).map(|contact| (contact, motion))
+}
+
+/// The part of an element in the sweep for the state after one of its states; `step`: in that for an increment, which
+/// is loaded by what the element leaves open.
+#[inline(always)]
+#[allow(clippy::too_many_arguments, reason = "what is known of one element, inlined")]
+fn stamp<T: Real, M: Model<T>>(
+    model: &M,
+    element: &Element<T, M>,
+    work: &mut Work<T, M>,
+    left: &Node<T, M>,
+    state: usize,
+    ratio: &Option<Ratio<T>>,
+    scale: T,
+    step: bool,
+) -> Result<Stamp<T, Bending>, Fault> {
+    let (contact, _) = linearise(model, element, work, left, state, ratio, scale)?;
+    work.touch = contact.touch;
+    let mut stamp = contact.stamp(element);
+    if step {
+        (stamp.fe, stamp.fr) = (-work.open, T::Vec2::default());
+    }
+    Ok(stamp)
 }
 
 /// The larger of two sizes. (A maximum that treats NaN takes three instructions more.)

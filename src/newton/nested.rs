@@ -447,9 +447,9 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
 
     /// From nothing, for bending alone: the free beam, then a continuation in the stiffness as far as it is needed.
     fn cold(&mut self, goal: Goal<T>, count: &mut Count) -> Result<Outcome, Halt> {
-        let changed = self.free(count)?;
+        self.free(count)?;
         if !M::Law::PRESENT {
-            return self.iterate_from(changed, T::one(), goal, STAGE, count);
+            return self.iterate(T::one(), goal, STAGE, count);
         }
         let soft = T::of(SOFT) * self.bending() / self.context.model.length().powi(4);
         let stiffness = self.stiffness();
