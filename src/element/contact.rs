@@ -30,13 +30,15 @@ pub(crate) enum Touch {
     High,
     /// ... or below minus its truncation.
     Low,
-    /// In part, or with a stiffness that varies.
+    /// In part: the contact's edge is inside.
+    Edge,
+    /// Everywhere, with a stiffness that varies.
     Mixed,
 }
 
 impl Touch {
     /// How `element` touches at the penetration `eta` and the potential `q`, if it acts, without any quadrature.
-    /// Unless it is `Mixed`, the element's matrix and its part in the right-hand side follow from this and
+    /// Unless it is `Edge` or `Mixed`, the element's matrix and its part in the right-hand side follow from this and
     /// its samples alone.
     #[inline(always)]
     pub(crate) fn of<T: Real, M: Model<T>>(
@@ -47,7 +49,7 @@ impl Touch {
     ) -> Self {
         match eta.side(T::zero()) {
             Side::Below => return Self::Free,
-            Side::Both => return Self::Mixed,
+            Side::Both => return Self::Edge,
             Side::Above => {}
         }
         if !M::Law::LINEAR || element.law.constant().is_none() {
@@ -132,9 +134,10 @@ impl<T: Real> Contact<T> {
             Touch::Full => Integrals::Uniform(stiffness),
             Touch::High => Integrals::Uniform(stiffness + drive()),
             Touch::Low => Integrals::Uniform(stiffness - drive()),
-            Touch::Mixed => {
+            Touch::Edge | Touch::Mixed => {
                 let q = q.filter(|_| element.conducts_onto()).map(|q| q());
-                return Self::split(model, element, &eta, q.as_ref(), scale, Tangent::Whole);
+                let split = Self::split(model, element, &eta, q.as_ref(), scale, Tangent::Whole)?;
+                return Ok(Self { touch, ..split });
             }
         };
         Ok(Self { touch, force })

@@ -127,6 +127,7 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
     fn trial(&mut self, scale: T, count: &mut Count) -> Result<Trial<T>, Halt> {
         count.spend(self.places.len())?;
         let open = self.join_nodes();
+        self.renew();
         let residual = self.balance(scale)?;
         let work = self.places.iter().fold(T::zero(), |sum, Place { work, .. }| {
             sum + work.link().map_or(T::zero(), |link| work.open.times(link.step.e))

@@ -224,9 +224,18 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         self.node = electric::solve::<T, M, true>(self.context.model, self.places, self.current);
     }
 
+    /// The same where bending moves them.
+    fn renew(&mut self) {
+        if self.two_way() {
+            self.electric();
+        }
+    }
+
     /// The same with the rounding of plain sums, as good as an iteration needs.
-    fn electric_rounded(&mut self) {
-        self.node = electric::solve::<T, M, false>(self.context.model, self.places, self.current);
+    fn renew_rounded(&mut self) {
+        if self.two_way() {
+            self.node = electric::solve::<T, M, false>(self.context.model, self.places, self.current);
+        }
     }
 
     /// Iterates to the goal, at most `most` times, with the law scaled by `scale`. The current state is then the best
@@ -270,9 +279,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     pub(crate) fn free(&mut self, count: &mut Count) -> Result<(), Halt> {
         let all = 0..self.places.len();
         self.best = None;
-        if self.two_way() {
-            self.electric_rounded();
-        }
+        self.renew_rounded();
         count.spend(all.len())?;
         self.condense(all, T::zero(), Solve::State)?;
         count.iterations += 1;
@@ -299,13 +306,11 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         count: &mut Count,
     ) -> Result<Outcome, Halt> {
         let stop = goal.stop;
-        if self.two_way() {
-            self.electric_rounded();
-        }
+        self.renew_rounded();
         let mut least = T::infinity();
         let mut rounds_since_best = 0;
         let (mut slow, mut last) = (0, T::infinity());
-        let mut short = T::of(SHORT);
+        let mut short = None;
         // What rounding may leave of a step.
         let blur = T::of(64.0) * T::epsilon() * T::from(self.places.len()).unwrap_or(T::one());
         for _ in 0..=most {
@@ -314,6 +319,8 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 let stepped = self.step(&changed, scale, count);
                 // There is a way back where a state was good before.
                 residual = if self.best.is_some() { self.tried(stepped)? } else { stepped? };
+                // Without an edge of contact the equations are all but linear.
+                short.get_or_insert(T::of(if self.edges(&changed) { SHORT } else { LINEAR }));
             }
             let moved = residual.relative();
             if !goal.finest && moved <= stop {
@@ -326,17 +333,17 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             let mut checked = done || near || rounds_since_best == IDLE;
             if checked {
                 residual = self.settle(scale, stop, count)?;
-            } else if goal.finest && moved <= short {
+            } else if goal.finest && short.is_some_and(|short| moved <= short) {
                 let balanced = self.check(scale, count);
                 let balanced = self.tried(balanced)?;
                 checked = balanced.relative() <= stop;
                 // Not twice in vain: the steps have to grow far shorter before it is asked again.
-                short = (T::of(1e-3) * moved).min(T::of(QUADRATIC));
+                short = Some((T::of(1e-3) * moved).min(T::of(QUADRATIC)));
                 if checked {
                     residual = balanced;
                 }
-            } else if self.two_way() {
-                self.electric_rounded();
+            } else {
+                self.renew_rounded();
             }
             if checked && residual.relative() <= stop {
                 self.best = Some((self.current, residual));
@@ -371,6 +378,11 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             changed = self.changed(false);
         }
         Ok(Outcome::Stalled)
+    }
+
+    /// Had one of the elements an edge of contact in it when they were swept?
+    fn edges(&self, swept: &Range<usize>) -> bool {
+        self.places[swept.clone()].iter().any(|place| place.work.touch == Touch::Edge)
     }
 
     /// One full step, where the elements `changed` have changed. By how much it moved the beam: the change of the
@@ -673,11 +685,30 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         -T::Vec2::of(w.value(), theta.value())
     }
 
+    /// From a state that is all but the solution: one step for an increment. A sweep for the whole state would leave
+    /// rounding in it that grows with the number of elements.
+    pub(crate) fn advance(&mut self, stop: T, count: &mut Count) -> Result<Outcome, Halt> {
+        count.spend(self.places.len())?;
+        let open = self.join_nodes();
+        self.renew();
+        let residual = self.balance(T::one())?;
+        self.best = Some((self.current, residual));
+        let residual = self.increment(open, T::one(), count)?;
+        self.best = Some((self.current, residual));
+        Ok(if residual.relative() <= stop { Outcome::Converged } else { Outcome::Stalled })
+    }
+
+    /// Are there so many elements that the rounding of sweeps shows before that of the contact?
+    pub(crate) fn is_fine(&self) -> bool {
+        self.places.len() >= FINE
+    }
+
     /// Takes the rounding of the sweeps out of a converged state, where there is any to speak of; keeps
     /// what is better.
     pub(crate) fn refine(&mut self, count: &mut Count) -> Result<(), Halt> {
         let Some((_, best)) = self.best else { return Ok(()) };
-        if best.relative() <= T::of(128.0) * T::epsilon() {
+        let few = T::of(FINE as f64) / T::from(self.places.len()).unwrap_or(T::one());
+        if best.relative() <= T::of(128.0) * T::epsilon() * few.max(T::one()) {
             return Ok(());
         }
         let refined = self.rejoin(T::one(), count).and_then(|open| {
@@ -707,9 +738,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             && best != self.current
         {
             self.current = best;
-            if self.two_way() {
-                self.electric();
-            }
+            self.renew();
         }
     }
 
@@ -787,20 +816,17 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         Ok(())
     }
 
-    /// The residual of the current state by statics, on all elements.
+    /// The residual of the current state by statics, on all elements, with u and q of that state.
     fn check(&mut self, scale: T, count: &mut Count) -> Result<Residual<T>, Halt> {
         count.spend(self.places.len())?;
+        self.renew();
         self.balance(scale)
     }
 
     /// The residual by statics: no part of the recursion is used. Moments by deformation are compared with those
-    /// by statics from the left end, after u and q are renewed where bending moves them; each element keeps what
-    /// its force and moment are off by.
+    /// by statics from the left end; each element keeps what its force and moment are off by.
     #[inline(never)]
     fn balance(&mut self, scale: T) -> Result<Residual<T>, Halt> {
-        if self.two_way() {
-            self.electric();
-        }
         let Context { model, ref onto, .. } = *self.context;
         let scale = self.scaling(scale);
         let mut residual = Residual::none();
@@ -910,7 +936,10 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             let q = onto.as_ref().map(|ratio| || electric::potential(element, node, &work.node, ratio));
             let eta = Motion::new(element.h, e, d).cubic();
             let touch = Touch::of(model, element, &eta, q);
-            if touch == Touch::Mixed || touch != work.touch || (rescaled && touch != Touch::Free) {
+            if matches!(touch, Touch::Edge | Touch::Mixed)
+                || touch != work.touch
+                || (rescaled && touch != Touch::Free)
+            {
                 changed = changed.start.min(i)..i + 1;
             }
             node = &work.node;
@@ -968,11 +997,17 @@ fn larger<T: Real>(a: T, b: T) -> T {
 /// Increments taken one after the other, each from sweeps of its own.
 const POLISHINGS: usize = 6;
 
+/// Elements from which on the rounding of sweeps shows.
+const FINE: usize = 1000;
+
 /// Residual of a sweep that may be all rounding: if the next one is not better, statics is asked.
 const NEAR: f64 = 1e-7;
 
-/// Change of the moments by a step after which statics is asked whether it was the last.
+/// Change of the moments by the first step after which statics is asked whether it was the last ...
 const SHORT: f64 = 1e-3;
+
+/// ... and where no element has an edge of contact in it.
+const LINEAR: f64 = 3e-2;
 
 /// Residual from which the next Newton step leaves its square.
 const QUADRATIC: f64 = 1e-6;

@@ -316,8 +316,16 @@ fn descend<T: Real, M: Model<T>>(
         // A halt on a coarser mesh is one on all: what it found is only carried on.
         if outcome.is_ok() {
             let goal = if rank == 0 { Goal { stop: settings.stop, finest: true } } else { Goal::start() };
-            outcome =
-                if coarsest { level.begin(goal, count) } else { level.iterate(T::one(), goal, STAGE, count) };
+            outcome = if coarsest {
+                level.begin(goal, count)
+            } else if goal.finest && level.is_fine() {
+                match level.advance(goal.stop, count) {
+                    Ok(Outcome::Stalled) => level.iterate(T::one(), goal, STAGE, count),
+                    outcome => outcome,
+                }
+            } else {
+                level.iterate(T::one(), goal, STAGE, count)
+            };
             if !coarsest && outcome == Ok(Outcome::Stalled) {
                 outcome = if level.convex() {
                     // The contact's edges are known to a few elements: soften until its layers are as wide.
