@@ -998,7 +998,7 @@ fn larger<T: Real>(a: T, b: T) -> T {
 const POLISHINGS: usize = 6;
 
 /// Elements from which on the rounding of sweeps shows.
-const FINE: usize = 1000;
+const FINE: usize = 4000;
 
 /// Residual of a sweep that may be all rounding: if the next one is not better, statics is asked.
 const NEAR: f64 = 1e-7;
