@@ -25,8 +25,10 @@ const MERGED: usize = 4;
 const COARSEST: usize = 40;
 /// Meshes at most: 4^16 times the coarsest is more than any memory.
 const MOST_LEVELS: usize = 16;
-/// Step after which a coarser mesh, or a stage of the continuation, has done its part.
+/// Step after which a stage of the continuation has done its part ...
 const ROUGH: f64 = 1e-3;
+/// ... and a coarser mesh: what is left to do costs less there.
+const CLOSE: f64 = 1e-4;
 /// Iterations granted to one stage or coarser mesh.
 const STAGE: usize = 15;
 /// Stages of the continuation closer than this factor are not tried.
@@ -315,7 +317,8 @@ fn descend<T: Real, M: Model<T>>(
         }
         // A halt on a coarser mesh is one on all: what it found is only carried on.
         if outcome.is_ok() {
-            let goal = if rank == 0 { Goal { stop: settings.stop, finest: true } } else { Goal::start() };
+            let finest = rank == 0;
+            let goal = Goal { stop: if finest { settings.stop } else { T::of(CLOSE) }, finest };
             outcome = if coarsest {
                 level.begin(goal, count)
             } else if goal.finest && level.is_fine() {
