@@ -151,8 +151,9 @@ impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
             let eta = Motion::new(element.h, state.e, state.d).cubic();
             for &(from, to) in Element::<T, M>::contact_parts(&eta).iter().rev() {
                 // t runs from right to left. At a clamp without a gap the penetration is zero with its slope,
-                // and rounding may put a crossing beside it.
-                let clamped = |here: bool| if here { T::of(1e-6) } else { T::zero() };
+                // and rounding may put a crossing beside it: on an element of a thousand at the root of 1e-16 over
+                // 1e-6.
+                let clamped = |here: bool| if here { T::of(1e-5) } else { T::zero() };
                 let (at_left, at_right) = (clamped(i == 0), clamped(i == self.places.len() - 1));
                 if from > T::one() - at_left || to < at_right {
                     continue;

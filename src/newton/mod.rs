@@ -707,7 +707,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     /// what is better.
     pub(crate) fn refine(&mut self, count: &mut Count) -> Result<(), Halt> {
         let Some((_, best)) = self.best else { return Ok(()) };
-        let few = T::of(FINE as f64) / T::from(self.places.len()).unwrap_or(T::one());
+        let few = T::of(FEW) / T::from(self.places.len()).unwrap_or(T::one());
         if best.relative() <= T::of(128.0) * T::epsilon() * few.max(T::one()) {
             return Ok(());
         }
@@ -997,14 +997,17 @@ fn larger<T: Real>(a: T, b: T) -> T {
 /// Increments taken one after the other, each from sweeps of its own.
 const POLISHINGS: usize = 6;
 
-/// Elements from which on the rounding of sweeps shows.
+/// Elements below which the residual shows other rounding than that of sweeps.
+const FEW: f64 = 1000.0;
+
+/// Elements from which on the rounding of sweeps is worth a balance before the first of them.
 const FINE: usize = 4000;
 
 /// Residual of a sweep that may be all rounding: if the next one is not better, statics is asked.
 const NEAR: f64 = 1e-7;
 
 /// Change of the moments by the first step after which statics is asked whether it was the last ...
-const SHORT: f64 = 1e-3;
+const SHORT: f64 = 1e-4;
 
 /// ... and where no element has an edge of contact in it.
 const LINEAR: f64 = 3e-2;
