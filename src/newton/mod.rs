@@ -310,7 +310,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         let mut least = T::infinity();
         let mut rounds_since_best = 0;
         let (mut slow, mut last) = (0, T::infinity());
-        let mut short = None;
+        let mut short: Option<T> = None;
         // What rounding may leave of a step.
         let blur = T::of(64.0) * T::epsilon() * T::from(self.places.len()).unwrap_or(T::one());
         for _ in 0..=most {
@@ -320,7 +320,10 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 // There is a way back where a state was good before.
                 residual = if self.best.is_some() { self.tried(stepped)? } else { stepped? };
                 // Without an edge of contact the equations are all but linear.
-                short.get_or_insert(T::of(if self.edges(&changed) { SHORT } else { LINEAR }));
+                short = Some(match short {
+                    None => T::of(if self.edges(&changed) { SHORT } else { LINEAR }),
+                    Some(before) => before.min(T::of(QUADRATIC)),
+                });
             }
             let moved = residual.relative();
             if !goal.finest && moved <= stop {
@@ -338,7 +341,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 let balanced = self.tried(balanced)?;
                 checked = balanced.relative() <= stop;
                 // Not twice in vain: the steps have to grow far shorter before it is asked again.
-                short = Some((T::of(1e-3) * moved).min(T::of(QUADRATIC)));
+                short = Some(T::of(1e-3) * moved);
                 if checked {
                     residual = balanced;
                 }
@@ -708,7 +711,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     pub(crate) fn refine(&mut self, count: &mut Count) -> Result<(), Halt> {
         let Some((_, best)) = self.best else { return Ok(()) };
         let few = T::of(FEW) / T::from(self.places.len()).unwrap_or(T::one());
-        if best.relative() <= T::of(128.0) * T::epsilon() * few.max(T::one()) {
+        if best.relative() <= T::of(128.0) * T::epsilon() * (few * few).max(T::one()) {
             return Ok(());
         }
         let refined = self.rejoin(T::one(), count).and_then(|open| {
