@@ -57,6 +57,12 @@ impl Touch {
         }
         let Some(q) = q.filter(|_| element.conducts_onto()) else { return Self::Full };
         let bounds = model.conduction();
+        if let (Some(mu1), Some(k)) = (element.mu1.constant(), element.law.constant())
+            && mu1 * bounds.potential_truncation <= T::epsilon() * k
+        {
+            // Less than the rounding of the law's own force.
+            return Self::Full;
+        }
         if element.mu1.constant().is_none() || eta.side(bounds.truncation) != Side::Below {
             return Self::Mixed;
         }

@@ -307,8 +307,9 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     ) -> Result<Outcome, Halt> {
         let stop = goal.stop;
         self.renew_rounded();
-        let mut least = T::infinity();
-        let mut rounds_since_best = 0;
+        // The shortest step, and the least residual where steps went down the energy.
+        let (mut least, mut lowest) = (T::infinity(), T::infinity());
+        let (mut rounds_since_best, mut stuck) = (0, 0);
         let (mut slow, mut last) = (0, T::infinity());
         let mut short: Option<T> = None;
         // What rounding may leave of a step.
@@ -319,6 +320,10 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 let stepped = self.step(&changed, scale, count);
                 // There is a way back where a state was good before.
                 residual = if self.best.is_some() { self.tried(stepped)? } else { stepped? };
+                if !residual.is_finite() && self.best.is_some_and(|(best, _)| best == self.current) {
+                    // The state that seemed best cannot be gone on from: the one before it could.
+                    self.best = Some((1 - self.current, residual));
+                }
                 // Without an edge of contact the equations are all but linear.
                 short = Some(match short {
                     None => T::of(if self.edges(&changed) { SHORT } else { LINEAR }),
@@ -359,18 +364,24 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                     return Ok(Outcome::Stalled);
                 }
                 self.keep_best();
-                match self.lower(T::of(0.5) * least, scale, stop, count)? {
+                match self.lower(T::of(0.5) * lowest, scale, stop, count)? {
                     Some(lower) if lower.relative() <= stop => return Ok(Outcome::Converged),
-                    Some(lower) => residual = lower,
+                    Some(lower) => lowest = lower.relative(),
+                    // Rounding of a steep law may hide where the energy falls, but not from full steps for good.
+                    None if stuck < STUCK => stuck += 1,
                     None => return Ok(Outcome::Floor),
                 }
+                // Full steps again.
+                (least, last, rounds_since_best) = (T::infinity(), T::infinity(), 0);
+                changed = if self.fresh { self.changed(false) } else { 0..self.places.len() };
+                continue;
             }
             let relative = residual.relative();
             let halved = relative < T::of(0.5) * least;
             rounds_since_best = if halved { 0 } else { rounds_since_best + 1 };
             least = least.min(relative);
             // At the floor no progress can be expected; above it, patience ends.
-            if least <= T::of(4.0) * residual.floor() && rounds_since_best >= FLOOR_STEPS {
+            if checked && relative <= T::of(4.0) * residual.floor() && rounds_since_best >= FLOOR_STEPS {
                 return Ok(Outcome::Floor);
             }
             slow += usize::from(relative > T::of(0.1) * last);
@@ -389,21 +400,21 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     }
 
     /// One full step, where the elements `changed` have changed. By how much it moved the beam: the change of the
-    /// moments. The state before it is kept as the best so far.
+    /// moments. The best state is the one after the shortest step.
     fn step(&mut self, changed: &Range<usize>, scale: T, count: &mut Count) -> Result<Residual<T>, Halt> {
         let swept = self.extent(changed);
         count.spend(swept.len())?;
         self.condense(swept, scale, Solve::State)?;
-        let before = self.current;
-        self.best = None;
         let residual = self.substitute(false).ok_or(Halt::Breakdown(self.meeting - 1))?;
-        self.best = Some((before, residual));
+        if self.best.is_none_or(|(_, best)| residual.relative() < best.relative()) {
+            self.best = Some((self.current, residual));
+        }
         count.iterations += 1;
         Ok(residual)
     }
 
-    /// From the current state, steps that lower the energy, each cut to where it is least, until the
-    /// residual is at most `enough`; `None` where they lower it by no more than rounding.
+    /// From the current state, steps that lower the energy, each cut to where it is least, until the residual has
+    /// halved and is at most `enough`; `None` where they lower it by no more than rounding.
     ///
     /// The steps are increments: a sweep for the whole state has rounding in it that may be more than what is
     /// left to go.
@@ -415,6 +426,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         count: &mut Count,
     ) -> Result<Option<Residual<T>>, Halt> {
         let mut residual = self.check(scale, count)?;
+        let enough = enough.min(T::of(0.5) * residual.relative());
         while residual.relative() > enough.max(stop) {
             let before = residual;
             self.best = Some((self.current, before));
@@ -869,7 +881,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         if residual.is_finite() { Ok(residual) } else { Err(Halt::Breakdown(0)) }
     }
 
-    /// Back substitution from the meeting point to both ends: the new state beside the one before; by how much it
+    /// Back substitution from the meeting point to both ends: the new state beside the best one; by how much it
     /// changes the elements' moments, which is what the one before was off by. `None` if the parts cannot be joined.
     #[inline(never)]
     fn substitute(&mut self, step: bool) -> Option<Residual<T>> {
@@ -892,7 +904,11 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             }
             None => self.context.right.close(&met)?,
         };
-        let target = 1 - current;
+        // The best state stays where it is, and the one before a step until something is better.
+        let target = match self.best {
+            Some((best, _)) if best != current => current,
+            _ => 1 - current,
+        };
         let mut near = d;
         let (mut size, mut mismatch, mut sum) = (T::zero(), T::zero(), T::zero());
         let mut see = |element: &Element<T, M>, before: State<T>, after: State<T>| {
@@ -1030,6 +1046,9 @@ const FLOOR_STEPS: usize = 6;
 
 /// Full steps taken without halving the residual before they are cut to descend.
 const FULL_STEPS: usize = 12;
+
+/// Times that no step lowers the energy, each followed by full steps, before that is the end.
+const STUCK: usize = 8;
 
 /// Halvings of one step.
 const HALVINGS: usize = 12;

@@ -26,7 +26,7 @@ const COARSEST: usize = 40;
 /// Meshes at most: 4^16 times the coarsest is more than any memory.
 const MOST_LEVELS: usize = 16;
 /// Step after which a stage of the continuation has done its part ...
-const ROUGH: f64 = 1e-3;
+const ROUGH: f64 = 1e-4;
 /// ... and a coarser mesh: what is left to do costs less there.
 const CLOSE: f64 = 1e-4;
 /// Iterations granted to one stage or coarser mesh.
