@@ -89,8 +89,6 @@ pub(crate) trait Block<T: Real>: Copy {
     fn matrix_carry(m: &Self::Matrix, h: T) -> Self::Matrix;
     /// S v
     fn energy_times(s: &Self::Energy, v: Self::Vector) -> Self::Vector;
-    /// |S||v| + |b|, component by component
-    fn sizes(s: &Self::Energy, v: Self::Vector, b: Self::Vector) -> Self::Vector;
     /// M v
     fn times(m: &Self::Matrix, v: Self::Vector) -> Self::Vector;
     /// -M
@@ -253,18 +251,6 @@ impl<T: Real, B: Block<T>> Condensed<T, B> {
     #[inline(always)]
     pub(crate) fn shift(&self, jump: B::Vector) -> Self {
         Self { s: self.s, b: self.b - B::energy_times(&self.s, jump) }
-    }
-
-    /// Force of the left part on the node at d: its energy's gradient.
-    #[inline(always)]
-    pub(crate) fn force(&self, d: B::Vector) -> B::Vector {
-        B::energy_times(&self.s, d) - self.b
-    }
-
-    /// Sizes of what cancels in [`Condensed::force`].
-    #[inline(always)]
-    pub(crate) fn rounding(&self, d: B::Vector) -> B::Vector {
-        B::sizes(&self.s, d, self.b)
     }
 
     #[inline]

@@ -136,13 +136,6 @@ impl<T: Real> Block<T> for Bending {
     }
 
     #[inline(always)]
-    fn sizes(s: &Symmetric<T>, v: T::Vec2, b: T::Vec2) -> T::Vec2 {
-        let (x, y) = (v.x().abs(), v.y().abs());
-        let (xx, xy, yy) = (s.xx.abs(), s.xy.abs(), s.yy.abs());
-        T::Vec2::of(xx * x + xy * y + b.x().abs(), xy * x + yy * y + b.y().abs())
-    }
-
-    #[inline(always)]
     fn times(m: &T::Mat2, v: T::Vec2) -> T::Vec2 {
         *m * v
     }
