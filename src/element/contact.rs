@@ -207,21 +207,21 @@ impl<T: Real> Contact<T> {
     #[inline(always)]
     pub(crate) fn stamp<M: Model<T>>(&self, element: &Element<T, M>) -> Stamp<T, Bending> {
         let (mut ee, mut er, mut rr) = (element.bending, T::Mat2::ZERO, Symmetric::default());
-        let (mut fe, mut fr) = (element.fe, element.fr);
+        let (mut fe, mut fr, mut free) = (element.fe, element.fr, true);
         if M::Gap::PRESENT {
             fe = fe - element.bending.times(element.gap.bend::<T>());
         }
         if (M::Law::PRESENT || M::Mu1::PRESENT)
             && let Some(tangent) = self.tangent(element.h)
         {
-            (ee, er, rr) = (ee + tangent.0, tangent.1, tangent.2);
+            (ee, er, rr, free) = (ee + tangent.0, tangent.1, tangent.2, false);
             if let Integrals::Moments { offset, .. } = self.force {
                 let (oe, or) = work::<T>(element.h, offset);
                 fe += oe;
                 fr += or;
             }
         }
-        Stamp { ee, er, re: T::Mat2::ZERO, rr, fe, fr }
+        Stamp { ee, er, re: T::Mat2::ZERO, rr, fe, fr, free }
     }
 
     /// Tangent blocks ee, er, rr, if there is contact.

@@ -149,6 +149,7 @@ impl<T: Real> Coupling<T> {
             rr: block(4, 4) + bordered(&rr),
             fe: T::Vec4::of([load.x(), load.y(), zero, zero]),
             fr: T::Vec4::default(),
+            free: false,
         }
     }
 }

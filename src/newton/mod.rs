@@ -4,18 +4,17 @@
 //!
 //! ```text
 //!     u, q, sigma, D  from the penetration, where conduction goes both ways        (2), (3)
-//!     forward sweep:  linearise the contact of each element, condense it, and
-//!                     measure the residual of the state that it was linearised at
-//!     backward sweep: the new state                                                (3.8)
+//!     forward sweep:  linearise the contact of each element and condense it
+//!     backward sweep: the new state, and how far it is from the one before         (3.8)
 //! ```
 //!
 //! *Residual.* The deformation of an element gives its moment: linear, known by its values at both ends,
 //! and formed from the relative unknowns e, free of the cancellation that differences of nodal values
 //! suffer. Equilibrium gives the same moment in another way. The residual is the largest difference of the
-//! two, over the largest moment. While iterating, a sweep compares each element with the condensed left
-//! part; this takes no extra pass. Before a solve says `Converged`, [`Level::check`] compares with the
-//! moment that statics gives from loads and contact forces alone, so that nothing that the recursion may
-//! have lost goes unseen. Where the contact force is monotone this residual bounds the error: the statical
+//! two, over the largest moment ([`Level::balance`]): statics takes loads and contact forces alone, so that
+//! nothing that the recursion may have lost goes unseen. While iterating, the change of the moments by a step says
+//! how far off the state before it was; this takes no extra pass. Statics is asked once a step is short, and before
+//! a solve says `Converged`. Where the contact force is monotone the residual bounds the error: the statical
 //! moment is in equilibrium, and so differs from that of the deformation by at least as much, in the energy
 //! norm, as the latter does from the solution's. Shear is not compared: 1/h times the rounding of e is in
 //! it, which is no error of the moment.
@@ -23,7 +22,8 @@
 //! *Whole states and increments.* A sweep solves for the whole state: what did not change need not be swept
 //! again. Its rounding, a few units times the root of N, stays in the state however often it is repeated.
 //! So where the residual shows it a last sweep solves for an increment, with what is missing of equilibrium
-//! and of compatibility for its data; both are found by compensated sums ([`Level::polish`]).
+//! and of compatibility for its data; both are found by compensated sums ([`Level::polish`]). On many elements the
+//! first step on the finest mesh is one already ([`Level::advance`]).
 //!
 //! *Only what changed.* Both ends are condensed towards a meeting point among the elements whose matrices
 //! changed; the parts outside them stay as they are. Convergence is decided on all elements.
@@ -1054,7 +1054,7 @@ const FEW: f64 = 1000.0;
 /// Elements from which on the rounding of sweeps is worth a balance before the first of them.
 const FINE: usize = 4000;
 
-/// Residual of a sweep that may be all rounding: if the next one is not better, statics is asked.
+/// A step that may be all rounding: if the next one is not shorter by half, statics is asked.
 const NEAR: f64 = 1e-7;
 
 /// Change of the moments by the first step after which statics is asked whether it was the last ...

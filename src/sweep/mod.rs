@@ -124,6 +124,8 @@ pub(crate) struct Stamp<T: Real, B: Block<T>> {
     pub(crate) rr: B::Energy,
     pub(crate) fe: B::Vector,
     pub(crate) fr: B::Vector,
+    /// A_er, A_re and A_rr are zero: nothing but bending.
+    pub(crate) free: bool,
 }
 
 /// All that lies to the left of a node: 1/2 d'S d - b'd.
@@ -191,6 +193,10 @@ impl<T: Real, B: Block<T>> Stamp<T, B> {
     #[inline(always)]
     pub(crate) fn mirrored(&self, h: T) -> Self {
         // e = -T e^ and d_right = T^-1 d_left + e^, put into the energy.
+        let (fe, fr) = (self.fr - B::carry_back(h, self.fe), B::carry_back(-h, self.fr));
+        if self.free {
+            return Self { ee: B::congruence(&self.ee, h), fe, fr, ..*self };
+        }
         let cross = B::of_energy(&self.rr) + B::negate(&B::carry_matrix(h, &self.er));
         let cross_low = B::of_energy(&self.rr) + B::negate(&B::matrix_carry(&B::lower(self), h));
         Self {
@@ -198,8 +204,9 @@ impl<T: Real, B: Block<T>> Stamp<T, B> {
             er: B::matrix_carry(&cross, -h),
             re: B::carry_matrix(-h, &cross_low),
             rr: B::congruence(&self.rr, -h),
-            fe: self.fr - B::carry_back(h, self.fe),
-            fr: B::carry_back(-h, self.fr),
+            fe,
+            fr,
+            free: false,
         }
     }
 }
@@ -229,11 +236,16 @@ impl<T: Real, B: Block<T>> Condensed<T, B> {
             let (gain, constant) = B::divide(&a, &upper, load)?;
             return Some(Self::from_nodal(element, h, gain, constant));
         }
-        let st = B::carry_right(&self.s, h);
-        let right = st + element.er;
-        let left = B::carry_left(&self.s, h, &st) + B::lower(element);
+        let mut right = B::carry_right(&self.s, h);
+        let mut left = B::carry_left(&self.s, h, &right);
+        let mut whole = B::congruence(&self.s, h);
+        if !element.free {
+            right = right + element.er;
+            left = left + B::lower(element);
+            whole = whole + element.rr;
+        }
         let (gain, constant) = B::divide(&a, &right, load)?;
-        let s = B::reduce(&(B::congruence(&self.s, h) + element.rr), &left, &gain);
+        let s = B::reduce(&whole, &left, &gain);
         let b = B::carry_back(h, self.b) + element.fr - B::times(&left, constant);
         Some((Self { s, b }, Factor { gain, constant, nodal: false }))
     }

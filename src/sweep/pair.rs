@@ -29,7 +29,8 @@ impl<T: Real> Symmetric<T> {
         let det = self.xx * self.yy - self.xy * self.xy;
         let scale = T::one() / det;
         // Away from the ends of the range the determinant says it all.
-        if det.is_normal() && scale.is_normal() {
+        let inside = |x: T| x.abs() >= T::min_positive_value() && x.abs() <= T::max_value();
+        if inside(det) && inside(scale) {
             return Some(Self::of(self.yy * scale, -self.xy * scale, self.xx * scale));
         }
         self.inverse_by_pivots()
