@@ -21,7 +21,7 @@ use crate::cubic::Cubic;
 use crate::element::Element;
 use crate::element::hermite::Motion;
 use crate::element::linear::{Flexibility, Inverse, current};
-use crate::profile::{Piece, Profile, Slot};
+use crate::profile::{Profile, Slot};
 use crate::real::{Real, Sum};
 use crate::scene::Model;
 use crate::storage::{Node, Place};
@@ -37,6 +37,8 @@ pub(crate) struct Ratio<T> {
     uu: T,
     uq: T,
     r: T,
+    /// 1 / uu
+    axial: T,
 }
 
 impl<T: Real> Ratio<T> {
@@ -44,7 +46,8 @@ impl<T: Real> Ratio<T> {
         let Inverse { uu, uq, qq } = first.flexibility.mean();
         let small = uq.abs() * (uq / uu).abs() <= qq;
         let uq = if small { uq } else { T::zero() };
-        Self { uu, uq, r: if M::Piezo::PRESENT { uq / uu } else { T::zero() } }
+        let r = if M::Piezo::PRESENT { uq / uu } else { T::zero() };
+        Self { uu, uq, r, axial: T::one() / uu }
     }
 
     /// sigma from tau and D.
@@ -61,7 +64,7 @@ impl<T: Real> Ratio<T> {
     /// z = uq - r uu, exactly zero for the ratio's own element.
     #[inline(always)]
     fn excess(&self, k: &Inverse<T>) -> T {
-        if self.uq == T::zero() { k.uq } else { (k.uq * self.uu - k.uu * self.uq) / self.uu }
+        if self.uq == T::zero() { k.uq } else { (k.uq * self.uu - k.uu * self.uq) * self.axial }
     }
 
     /// u' and q' from tau and D.
@@ -103,6 +106,7 @@ impl<T: Real, const EXACT: bool> Reach<T, EXACT> {
 
 /// Solves for u, q and the fluxes at nodes, given the penetration in state number `state`; returns the left
 /// end. `EXACT`: with compensated sums.
+#[inline(never)]
 pub(crate) fn solve<T: Real, M: Model<T>, const EXACT: bool>(
     model: &M,
     places: &mut [Place<T, M>],
@@ -114,43 +118,46 @@ pub(crate) fn solve<T: Real, M: Model<T>, const EXACT: bool>(
         Some(first) if present::<T, M>() => Ratio::of(&first.element),
         _ => return left,
     };
-    // First pass: what the loads alone do, kept at the nodes until the constants are known.
+    // First pass: what the loads alone do across each element, kept at its node until the constants are known.
     let mut reach = Reach::<T, EXACT>::default();
     let (mut load, mut charge) = (Sum::<T, EXACT>::default(), Sum::<T, EXACT>::default());
     let (mut slack_u, mut slack_q) = (Sum::<T, EXACT>::default(), Sum::<T, EXACT>::default());
     for Place { element, work } in &mut *places {
         let mean = element.flexibility.mean();
         let h = element.h;
+        let (mut u, mut q) = (T::zero(), T::zero());
         if M::Axial::PRESENT {
             let axial = element.axial.get();
             let before = load.value();
-            slack_u.add(h * mean.uu * before + axial.stretch);
+            u = h * mean.uu * before + axial.stretch;
             if M::Piezo::PRESENT {
-                slack_q.add(-(h * mean.uq * before + axial.charge));
+                q = -(h * mean.uq * before + axial.charge);
             }
             load.add(axial.total);
         }
         if M::Permittivity::PRESENT && M::Mu2::PRESENT {
             let source = current(model, element, &motion(element, work.states[state]));
             let before = charge.value();
-            slack_q.add(h * mean.qq * before + source.charge);
+            q = q + (h * mean.qq * before + source.charge);
             if M::Piezo::PRESENT {
-                slack_u.add(h * mean.uq * before + source.stretch);
+                u = u + (h * mean.uq * before + source.stretch);
             }
             charge.add(source.total);
         }
+        slack_u.add(u);
+        slack_q.add(q);
         reach.extend(h, &element.flexibility, &ratio);
-        work.node.u = Slot::of(slack_u.value());
-        work.node.q = Slot::of(slack_q.value());
+        work.node.u = Slot::of(u);
+        work.node.q = Slot::of(q);
         work.node.tau = Slot::of(load.value() + ratio.r * charge.value());
         work.node.charge = Slot::of(charge.value());
     }
     // [uu z; -uq qq] (tau_0, D_0)' = (U, drop + V)'; one of the rows may be absent.
     let lack = slack_u.value();
     let drop = ends.right - ends.left + slack_q.value();
+    let Reach { uu, z, uq, qq } = reach;
     let (tau, displacement) = match (M::Axial::PRESENT, M::Permittivity::PRESENT) {
         (true, true) => {
-            let Reach { uu, z, uq, qq } = reach;
             let (uu, z, uq, qq) = (uu.value(), z.value(), uq.value(), qq.value());
             if uq.abs() * (z / uu).abs() <= qq.abs() {
                 let share = uq / uu;
@@ -162,8 +169,8 @@ pub(crate) fn solve<T: Real, M: Model<T>, const EXACT: bool>(
                 ((qq * displacement - drop) / uq, displacement)
             }
         }
-        (true, false) => (lack / reach.uu.value(), T::zero()),
-        _ => (T::zero(), drop / reach.qq.value()),
+        (true, false) => (lack / uu.value(), T::zero()),
+        _ => (T::zero(), drop / qq.value()),
     };
     left.u = Slot::of(T::zero());
     left.q = Slot::of(ends.left);
@@ -171,24 +178,18 @@ pub(crate) fn solve<T: Real, M: Model<T>, const EXACT: bool>(
     left.charge = Slot::of(displacement);
 
     // Second pass: the fields.
-    let mut reach = Reach::<T, EXACT>::default();
+    let (mut u, mut q) = (Sum::<T, EXACT>::default(), Sum::<T, EXACT>::from(ends.left));
     for Place { element, work } in &mut *places {
-        reach.extend(element.h, &element.flexibility, &ratio);
         let node = &mut work.node;
+        let (by_u, by_q) = ratio.gradients::<M>(&element.flexibility.mean(), tau, displacement);
         if M::Axial::PRESENT {
-            let mut u = tau * reach.uu.value() - node.u.get();
-            if M::Piezo::PRESENT {
-                u = u + displacement * reach.z.value();
-            }
-            node.u = Slot::of(u);
+            u.add(element.h * by_u - node.u.get());
+            node.u = Slot::of(u.value());
             node.tau = Slot::of(tau - node.tau.get());
         }
         if M::Permittivity::PRESENT {
-            let mut q = displacement * reach.qq.value() - node.q.get();
-            if M::Piezo::PRESENT {
-                q = q - tau * reach.uq.value();
-            }
-            node.q = Slot::of(ends.left + q);
+            q.add(element.h * by_q - node.q.get());
+            node.q = Slot::of(q.value());
             node.charge = Slot::of(displacement - node.charge.get());
         }
     }
@@ -222,12 +223,12 @@ pub(crate) fn potential<T: Real, M: Model<T>>(
 
 /// mu2 is there and not zero everywhere.
 pub(crate) fn conducts_into<T: Real, M: Model<T>>(places: &[Place<T, M>]) -> bool {
-    M::Mu2::PRESENT && places.iter().any(|p| p.element.mu2.constant() != Some(T::zero()))
+    places.iter().any(|p| p.element.conducts_into())
 }
 
 /// mu1 is there and not zero everywhere.
 pub(crate) fn conducts_onto<T: Real, M: Model<T>>(places: &[Place<T, M>]) -> bool {
-    M::Mu1::PRESENT && places.iter().any(|p| p.element.mu1.constant() != Some(T::zero()))
+    places.iter().any(|p| p.element.conducts_onto())
 }
 
 #[cfg(test)]

@@ -52,6 +52,15 @@ pub(crate) fn integrate<T: Real, const Q: usize>(a: T, b: T, mut f: impl FnMut(T
     sum * length
 }
 
+/// Adds the part of a force at t to its moments, the integrals of the force times t^j.
+#[inline(always)]
+pub(crate) fn add_moments<T: Real, const J: usize>(moments: &mut [T; J], t: T, mut part: T) {
+    for moment in moments {
+        *moment = *moment + part;
+        part = part * t;
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

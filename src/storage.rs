@@ -96,8 +96,6 @@ impl<T: Real> IndexMut<usize> for States<T> {
 /// What the monolithic sweep keeps of an element (see [`crate::newton`]).
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Link<T: Real> {
-    /// What is missing of equilibrium: differences of force and moment at the left end.
-    pub(crate) load: T::Vec2,
     /// The Newton step.
     pub(crate) step: State<T>,
     pub(crate) factor: Factor<T, Coupled>,
@@ -116,25 +114,13 @@ pub(crate) struct Work<T: Real, M: Model<T>> {
     /// Which is which, the iteration knows.
     pub(crate) states: States<T>,
     pub(crate) touch: Touch,
+    /// What is missing of equilibrium: differences of force and moment at the left end.
+    pub(crate) open: T::Vec2,
     pub(crate) node: Node<T, M>,
     linked: Linked<T, M>,
 }
 
 impl<T: Real, M: Model<T>> Work<T, M> {
-    /// What is missing of equilibrium is kept in the spare state, or beside it where there is room.
-    #[inline(always)]
-    pub(crate) fn load(&self, spare: usize) -> T::Vec2 {
-        self.link().map_or(self.states[spare].e, |link| link.load)
-    }
-
-    #[inline(always)]
-    pub(crate) fn set_load(&mut self, spare: usize, load: T::Vec2) {
-        match self.link_mut() {
-            Some(link) => link.load = load,
-            None => self.states[spare].e = load,
-        }
-    }
-
     #[inline(always)]
     pub(crate) fn link(&self) -> Option<&Link<T>> {
         self.linked.look()
@@ -160,6 +146,7 @@ impl<T: Real, M: Model<T>> Default for Work<T, M> {
             factor: Factor::default(),
             states: States::default(),
             touch: Touch::Free,
+            open: T::Vec2::default(),
             node: Node::default(),
             linked: Linked::<T, M>::default(),
         }

@@ -177,7 +177,7 @@ impl<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized> Adaptive<'s, T, M, S> 
         if let Some((elements, state)) = last {
             let places = storage::first(self.memory, elements);
             if carry_over(scene, places, state)? {
-                let answer = nested::sharpen(scene, places, f64::INFINITY, settings);
+                let answer = nested::sharpen(scene, places, T::infinity(), settings);
                 let visits = answer.report.element_visits;
                 if answer.report.status == Status::Converged {
                     start = Some(Start { elements, answer, visits, warm: true });
@@ -262,7 +262,8 @@ fn run<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
     let solved_to = |target: T, visits: usize| {
         let last = target <= tolerance;
         let stop = if last { settings.stop } else { settings.stop.max(T::of(ROUGH) * target) };
-        let units = if last { (ROUGH * (tolerance / T::epsilon()).f64()).max(128.0) } else { f64::INFINITY };
+        let units =
+            if last { (T::of(ROUGH) * tolerance / T::epsilon()).max(T::of(128.0)) } else { T::infinity() };
         (Settings { stop, max_visits: settings.max_visits.map(|most| most.saturating_sub(visits)) }, units)
     };
     let (mut passes, mut finished) = (1, true);

@@ -116,7 +116,7 @@ impl<T: Real, M: Model<T>> Solution<'_, T, M> {
         let (mut elements, mut visits, mut pass) = (needed, 0, 1);
         loop {
             let places = storage::first(memory, elements);
-            let mut answer = nested::sharpen(scene, places, 1.0, settings);
+            let mut answer = nested::sharpen(scene, places, T::one(), settings);
             visits += answer.report.element_visits;
             answer.report.element_visits = visits;
             let imbalance = bound::imbalance(scene, places, &answer);

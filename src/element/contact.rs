@@ -11,7 +11,7 @@ use super::hermite::{Motion, work};
 use crate::cubic::{Cubic, Side};
 use crate::law::{Compliance, truncate, truncate_positive};
 use crate::profile::{Piece, Profile};
-use crate::quadrature::{POINTS, gauss};
+use crate::quadrature::{POINTS, add_moments, gauss};
 use crate::real::{Pair, Real, Square};
 use crate::scene::Model;
 use crate::sweep::Stamp;
@@ -30,33 +30,39 @@ pub(crate) enum Touch {
     High,
     /// ... or below minus its truncation.
     Low,
-    /// In part, or with a stiffness that varies.
+    /// In part: the contact's edge is inside.
+    Edge,
+    /// Everywhere, with a stiffness that varies.
     Mixed,
 }
 
 impl Touch {
-    /// How `element` touches at the penetration `eta` and the potential `q`, without any quadrature.
-    /// Unless it is `Mixed`, the element's matrix and its part in the right-hand side follow from this and
+    /// How `element` touches at the penetration `eta` and the potential `q`, if it acts, without any quadrature.
+    /// Unless it is `Edge` or `Mixed`, the element's matrix and its part in the right-hand side follow from this and
     /// its samples alone.
     #[inline(always)]
     pub(crate) fn of<T: Real, M: Model<T>>(
         model: &M,
         element: &Element<T, M>,
         eta: &Cubic<T>,
-        q: impl FnOnce() -> Cubic<T>,
+        q: Option<impl FnOnce() -> Cubic<T>>,
     ) -> Self {
         match eta.side(T::zero()) {
             Side::Below => return Self::Free,
-            Side::Both => return Self::Mixed,
+            Side::Both => return Self::Edge,
             Side::Above => {}
         }
         if !M::Law::LINEAR || element.law.constant().is_none() {
             return Self::Mixed;
         }
-        if !element.conducts_onto() {
+        let Some(q) = q.filter(|_| element.conducts_onto()) else { return Self::Full };
+        let bounds = model.conduction();
+        if let (Some(mu1), Some(k)) = (element.mu1.constant(), element.law.constant())
+            && mu1 * bounds.potential_truncation <= T::epsilon() * k
+        {
+            // Less than the rounding of the law's own force.
             return Self::Full;
         }
-        let bounds = model.conduction();
         if element.mu1.constant().is_none() || eta.side(bounds.truncation) != Side::Below {
             return Self::Mixed;
         }
@@ -91,57 +97,56 @@ pub(crate) enum Tangent {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Contact<T> {
     pub(crate) touch: Touch,
-    /// Integrals over t of the tangent stiffness times t^j.
-    stiffness: [T; 7],
-    /// Integrals over t of (tangent stiffness . eta - force) times t^j: zero for a linear law.
-    offset: [T; 4],
+    force: Integrals<T>,
+}
+
+/// What the force of a contact is made of.
+#[derive(Clone, Copy, Debug)]
+enum Integrals<T> {
+    None,
+    /// One stiffness everywhere.
+    Uniform(T),
+    Moments {
+        /// Integrals over t of the tangent stiffness times t^j.
+        stiffness: [T; 7],
+        /// Integrals over t of (tangent stiffness . eta - force) times t^j: zero for a linear law.
+        offset: [T; 4],
+    },
 }
 
 /// At most three crossings each of eta = 0, eta = M, q = M, q = -M, and two turning points.
 pub(crate) type Splits<T> = ArrayVec<T, 14>;
 
 impl<T: Real> Contact<T> {
-    const FREE: fn() -> Self =
-        || Self { touch: Touch::Free, stiffness: [T::zero(); 7], offset: [T::zero(); 4] };
-
-    /// The whole element in contact with one stiffness k: integrals of k t^j.
-    #[inline(always)]
-    fn full(touch: Touch, k: T) -> Self {
-        let share = |j: f64| k * T::of(1.0 / (j + 1.0));
-        Self {
-            touch,
-            stiffness: [k, share(1.0), share(2.0), share(3.0), share(4.0), share(5.0), share(6.0)],
-            offset: [T::zero(); 4],
-        }
-    }
-
-    /// Linearises the contact of `element` at `motion`, with the potential `q` and the law scaled by
+    /// Linearises the contact of `element` at `motion`, with the potential `q`, if it acts, and the law scaled by
     /// `scale` (1, but for the continuation in the stiffness).
     #[inline(always)]
     pub(crate) fn at<M: Model<T>>(
         model: &M,
         element: &Element<T, M>,
         motion: &Motion<T>,
-        q: impl Fn() -> Cubic<T>,
+        q: Option<impl Fn() -> Cubic<T>>,
         scale: T,
     ) -> Result<Self, Fault> {
         if !M::Law::PRESENT && !M::Mu1::PRESENT {
-            return Ok(Self::FREE());
+            return Ok(Self { touch: Touch::Free, force: Integrals::None });
         }
         let eta = motion.cubic();
-        let touch = Touch::of(model, element, &eta, &q);
+        let touch = Touch::of(model, element, &eta, q.as_ref());
         let stiffness = scale * element.law.mean();
         let drive = || element.mu1.mean() * model.conduction().potential_truncation;
-        match touch {
-            Touch::Free => Ok(Self::FREE()),
-            Touch::Full => Ok(Self::full(touch, stiffness)),
-            Touch::High => Ok(Self::full(touch, stiffness + drive())),
-            Touch::Low => Ok(Self::full(touch, stiffness - drive())),
-            Touch::Mixed => {
-                let q = if element.conducts_onto() { q() } else { Cubic::default() };
-                Self::split(model, element, &eta, &q, scale, Tangent::Whole)
+        let force = match touch {
+            Touch::Free => Integrals::None,
+            Touch::Full => Integrals::Uniform(stiffness),
+            Touch::High => Integrals::Uniform(stiffness + drive()),
+            Touch::Low => Integrals::Uniform(stiffness - drive()),
+            Touch::Edge | Touch::Mixed => {
+                let q = q.filter(|_| element.conducts_onto()).map(|q| q());
+                let split = Self::split(model, element, &eta, q.as_ref(), scale, Tangent::Whole)?;
+                return Ok(Self { touch, ..split });
             }
-        }
+        };
+        Ok(Self { touch, force })
     }
 
     /// As [`Contact::at`], with [`Tangent::Nondecreasing`].
@@ -152,17 +157,19 @@ impl<T: Real> Contact<T> {
         q: &Cubic<T>,
         scale: T,
     ) -> Result<Self, Fault> {
+        let q = element.conducts_onto().then_some(q);
         Self::split(model, element, &motion.cubic(), q, scale, Tangent::Nondecreasing)
     }
 
     /// From what each Gauss point of the whole element adds: the tangent stiffness, and the offset (tangent
     /// stiffness . eta - force).
     pub(crate) fn at_points(points: [(T, T); POINTS]) -> Self {
-        let mut contact = Self { touch: Touch::Mixed, ..Self::FREE() };
-        for ((t, weight), (tangent, offset)) in gauss::<POINTS>().into_iter().zip(points) {
-            contact.add(T::of(t), T::of(weight), tangent, offset);
+        let (mut stiffness, mut offset) = ([T::zero(); 7], [T::zero(); 4]);
+        for ((t, weight), (tangent, part)) in gauss::<POINTS>().into_iter().zip(points) {
+            add_moments(&mut stiffness, T::of(t), T::of(weight) * tangent);
+            add_moments(&mut offset, T::of(t), T::of(weight) * part);
         }
-        contact
+        Self { touch: Touch::Mixed, force: Integrals::Moments { stiffness, offset } }
     }
 
     #[inline(never)]
@@ -170,120 +177,105 @@ impl<T: Real> Contact<T> {
         model: &M,
         element: &Element<T, M>,
         eta: &Cubic<T>,
-        q: &Cubic<T>,
+        q: Option<&Cubic<T>>,
         scale: T,
         of: Tangent,
     ) -> Result<Self, Fault> {
         let law = model.foundation().law;
-        let conducts = element.conducts_onto();
         let bounds = model.conduction();
         let (most, most_q) = (bounds.truncation, bounds.potential_truncation);
-        let mut splits = Splits::new();
-        put(&mut splits, law_splits::<T, M>(eta));
-        if conducts {
-            put(&mut splits, eta.crossings(most));
-            put(&mut splits, q.crossings(most_q));
-            put(&mut splits, q.crossings(-most_q));
-        }
-        let mut contact = Self { touch: Touch::Mixed, ..Self::FREE() };
-        for (from, to) in parts(&mut splits) {
-            let length = to - from;
-            if eta.at(from + T::of(0.5) * length) <= T::zero() {
-                continue;
+        let mut splits = kinks(model, eta, q);
+        let (mut stiffness, mut offset) = ([T::zero(); 7], [T::zero(); 4]);
+        touching(eta, &mut splits).try_for_each(|(t, weight)| {
+            let r = eta.at(t);
+            if r <= T::zero() {
+                return Ok(()); // Within rounding of the edge.
             }
-            for (z, weight) in gauss::<POINTS>() {
-                let t = from + length * T::of(z);
-                let r = eta.at(t);
-                if r <= T::zero() {
-                    continue; // Within rounding of the edge.
-                }
-                let (p, dp) = law.pressure(element.law.at(t), element.x(t), r);
-                if !(p.is_finite() && dp.is_finite()) {
-                    return Err(Fault::NotFinite);
-                }
-                if p < T::zero() || dp < T::zero() {
-                    return Err(Fault::NotMonotone);
-                }
-                let (mut force, mut tangent) = (scale * p, scale * dp);
-                if conducts {
-                    let drive = element.mu1.at(t) * truncate(q.at(t), most_q).0;
-                    let (value, slope) = truncate_positive(r, most);
-                    force = force + drive * value;
-                    if of == Tangent::Whole || drive > T::zero() {
-                        tangent = tangent + drive * slope;
-                    }
-                }
-                contact.add(t, T::of(weight) * length, tangent, tangent * r - force);
+            let (p, dp) = law.pressure(element.law.at(t), element.x(t), r);
+            if !(p.is_finite() && dp.is_finite()) {
+                return Err(Fault::NotFinite);
             }
-        }
-        Ok(contact)
-    }
-
-    #[inline(always)]
-    fn add(&mut self, t: T, weight: T, tangent: T, offset: T) {
-        let mut part = weight * tangent;
-        for moment in &mut self.stiffness {
-            *moment = *moment + part;
-            part = part * t;
-        }
-        let mut part = weight * offset;
-        for moment in &mut self.offset {
-            *moment = *moment + part;
-            part = part * t;
-        }
+            if p < T::zero() || dp < T::zero() {
+                return Err(Fault::NotMonotone);
+            }
+            let (mut force, mut tangent) = (scale * p, scale * dp);
+            if let Some(q) = q {
+                let drive = element.mu1.at(t) * truncate(q.at(t), most_q).0;
+                let (value, slope) = truncate_positive(r, most);
+                force = force + drive * value;
+                if of == Tangent::Whole || drive > T::zero() {
+                    tangent = tangent + drive * slope;
+                }
+            }
+            add_moments(&mut stiffness, t, weight * tangent);
+            add_moments(&mut offset, t, weight * (tangent * r - force));
+            Ok(())
+        })?;
+        Ok(Self { touch: Touch::Mixed, force: Integrals::Moments { stiffness, offset } })
     }
 
     /// The element's energy in (e, d): bending about the gap's own bend, loads, and this contact.
-    ///
-    /// With the shape functions 3 t^2 - 2 t^3, h (t^2 - t^3) of e and 1, -h t of d the matrices are
-    /// combinations of the stiffness moments.
     #[inline(always)]
     pub(crate) fn stamp<M: Model<T>>(&self, element: &Element<T, M>) -> Stamp<T, Bending> {
         let (mut ee, mut er, mut rr) = (element.bending, T::Mat2::ZERO, Symmetric::default());
-        let (mut fe, mut fr) = (element.fe, element.fr);
+        let (mut fe, mut fr, mut free) = (element.fe, element.fr, true);
         if M::Gap::PRESENT {
             fe = fe - element.bending.times(element.gap.bend::<T>());
         }
-        if (M::Law::PRESENT || M::Mu1::PRESENT) && self.touch != Touch::Free {
-            let tangent = self.tangent(element.h);
-            ee = ee + tangent.0;
-            er = tangent.1;
-            rr = tangent.2;
-            if self.touch == Touch::Mixed {
-                let (oe, or) = work::<T>(element.h, self.offset);
+        if (M::Law::PRESENT || M::Mu1::PRESENT)
+            && let Some(tangent) = self.tangent(element.h)
+        {
+            (ee, er, rr, free) = (ee + tangent.0, tangent.1, tangent.2, false);
+            if let Integrals::Moments { offset, .. } = self.force {
+                let (oe, or) = work::<T>(element.h, offset);
                 fe += oe;
                 fr += or;
             }
         }
-        Stamp { ee, er, re: T::Mat2::ZERO, rr, fe, fr }
+        Stamp { ee, er, re: T::Mat2::ZERO, rr, fe, fr, free }
     }
 
-    /// Tangent blocks ee, er, rr.
+    /// Tangent blocks ee, er, rr, if there is contact.
+    ///
+    /// With the shape functions 3 t^2 - 2 t^3, h (t^2 - t^3) of e and 1, -h t of d the matrices are
+    /// combinations of the stiffness moments.
     #[inline(always)]
-    fn tangent(&self, h: T) -> (Symmetric<T>, T::Mat2, Symmetric<T>) {
-        let [k0, k1, k2, k3, k4, k5, k6] = self.stiffness;
+    fn tangent(&self, h: T) -> Option<(Symmetric<T>, T::Mat2, Symmetric<T>)> {
         let n = |x: f64| T::of(x);
         let h2 = h * h;
         let h3 = h2 * h;
-        let ee = Symmetric::of(
-            h * (n(9.0) * k4 - n(12.0) * k5 + n(4.0) * k6),
-            h2 * (n(3.0) * k4 - n(5.0) * k5 + n(2.0) * k6),
-            h3 * (k4 - n(2.0) * k5 + k6),
-        );
-        let er = T::Mat2::of([
-            [h * (n(3.0) * k2 - n(2.0) * k3), h2 * (k2 - k3)],
-            [-(h2 * (n(3.0) * k3 - n(2.0) * k4)), -(h3 * (k3 - k4))],
-        ]);
-        let rr = Symmetric::of(h * k0, -(h2 * k1), h3 * k2);
-        (ee, er, rr)
+        match self.force {
+            Integrals::None => None,
+            Integrals::Uniform(k) => {
+                let (k1, k2, k3) = (k * h, k * h2, k * h3);
+                let ee = Symmetric::of(k1 * n(13.0 / 35.0), k2 * n(11.0 / 210.0), k3 * n(1.0 / 105.0));
+                let er = T::Mat2::of([
+                    [k1 * n(1.0 / 2.0), k2 * n(1.0 / 12.0)],
+                    [k2 * n(-7.0 / 20.0), k3 * n(-1.0 / 20.0)],
+                ]);
+                Some((ee, er, Symmetric::of(k1, k2 * n(-1.0 / 2.0), k3 * n(1.0 / 3.0))))
+            }
+            Integrals::Moments { stiffness: [k0, k1, k2, k3, k4, k5, k6], .. } => {
+                let ee = Symmetric::of(
+                    h * (n(9.0) * k4 - n(12.0) * k5 + n(4.0) * k6),
+                    h2 * (n(3.0) * k4 - n(5.0) * k5 + n(2.0) * k6),
+                    h3 * (k4 - n(2.0) * k5 + k6),
+                );
+                let er = T::Mat2::of([
+                    [h * (n(3.0) * k2 - n(2.0) * k3), h2 * (k2 - k3)],
+                    [-(h2 * (n(3.0) * k3 - n(2.0) * k4)), -(h3 * (k3 - k4))],
+                ]);
+                Some((ee, er, Symmetric::of(h * k0, -(h2 * k1), h3 * k2)))
+            }
+        }
     }
 
     /// The size of what cancels in the contact force `cd`: where the element is in contact in part, a stiff
     /// foundation sees the rounding of all of its penetration.
     #[inline(always)]
     pub(crate) fn size(&self, motion: &Motion<T>, cd: T::Vec2, h: T) -> T {
-        if self.touch == Touch::Mixed {
-            let terms = self.stiffness.iter().zip(motion.cubic().0);
+        if let Integrals::Moments { stiffness, .. } = self.force {
+            let terms = stiffness.iter().zip(motion.cubic().0);
             h * terms.fold(T::zero(), |sum, (moment, c)| sum + (*moment * c).abs())
         } else {
             cd.x().abs()
@@ -293,25 +285,34 @@ impl<T: Real> Contact<T> {
     /// Contact force on (e, d) at the state it was linearised at.
     #[inline(always)]
     pub(crate) fn force(&self, motion: &Motion<T>, h: T) -> (T::Vec2, T::Vec2) {
-        if self.touch == Touch::Free {
+        let Some((ee, er, rr)) = self.tangent(h) else {
             return (T::Vec2::default(), T::Vec2::default());
-        }
-        let (ee, er, rr) = self.tangent(h);
-        let (oe, or) = work::<T>(h, self.offset);
+        };
         let (e, d) = (motion.e, motion.d);
-        (ee.times(e) + er * d - oe, er.turned() * e + rr.times(d) - or)
+        let (on_e, on_d) = (ee.times(e) + er * d, er.turned() * e + rr.times(d));
+        if let Integrals::Moments { offset, .. } = self.force {
+            let (oe, or) = work::<T>(h, offset);
+            return (on_e - oe, on_d - or);
+        }
+        (on_e, on_d)
     }
 }
 
-/// Where the integral of the pressure is split: where the penetration crosses zero, and for a curved law where
+/// Where the integrals of the contact are split: where the penetration crosses zero, and for a curved law where
 /// it turns. There two crossings are born and die, and as such a law is not integrated exactly, its force
-/// would jump with the number of parts.
+/// would jump with the number of parts. With conduction by the potential `q` also where both are truncated.
 #[inline(always)]
-pub(crate) fn law_splits<T: Real, M: Model<T>>(eta: &Cubic<T>) -> ArrayVec<T, 5> {
-    let mut splits = ArrayVec::new();
+pub(crate) fn kinks<T: Real, M: Model<T>>(model: &M, eta: &Cubic<T>, q: Option<&Cubic<T>>) -> Splits<T> {
+    let mut splits = Splits::new();
     put(&mut splits, eta.crossings(T::zero()));
     if !M::Law::LINEAR {
         put(&mut splits, eta.turning_points());
+    }
+    if let Some(q) = q {
+        let bounds = model.conduction();
+        put(&mut splits, eta.crossings(bounds.truncation));
+        put(&mut splits, q.crossings(bounds.potential_truncation));
+        put(&mut splits, q.crossings(-bounds.potential_truncation));
     }
     splits
 }
@@ -345,11 +346,42 @@ pub(crate) fn parts<T: Real, const N: usize>(splits: &mut ArrayVec<T, N>) -> imp
     })
 }
 
+/// Points in t, with their weights, of a quadrature between the splits.
+pub(crate) fn points<T: Real, const N: usize>(
+    splits: &mut ArrayVec<T, N>,
+) -> impl Iterator<Item = (T, T)> + use<'_, T, N> {
+    parts(splits).flat_map(points_between)
+}
+
+/// The same on the parts where the penetration `eta` is positive, or no number: the law shall see that.
+pub(crate) fn touching<'a, T: Real, const N: usize>(
+    eta: &'a Cubic<T>,
+    splits: &'a mut ArrayVec<T, N>,
+) -> impl Iterator<Item = (T, T)> + use<'a, T, N> {
+    // Not `> 0`, which is false of NaN.
+    let touches = |&(from, to): &(T, T)| {
+        let parted = eta.at(from + T::of(0.5) * (to - from)) <= T::zero();
+        !parted
+    };
+    parts(splits).filter(touches).flat_map(points_between)
+}
+
+fn points_between<T: Real>((from, to): (T, T)) -> impl Iterator<Item = (T, T)> {
+    let length = to - from;
+    gauss::<POINTS>().into_iter().map(move |(z, weight)| (from + length * T::of(z), T::of(weight) * length))
+}
+
 impl<T: Real, M: Model<T>> Element<T, M> {
     /// Has the conduction force mu1 R(q) R~(eta) a part here?
     #[inline(always)]
     pub(crate) fn conducts_onto(&self) -> bool {
         M::Mu1::PRESENT && self.mu1.constant() != Some(T::zero())
+    }
+
+    /// Has the conduction current mu2 R~(eta)^2 a part here?
+    #[inline(always)]
+    pub(crate) fn conducts_into(&self) -> bool {
+        M::Mu2::PRESENT && self.mu2.constant() != Some(T::zero())
     }
 
     /// The parts of the element where the penetration is positive, as intervals in t.
@@ -370,7 +402,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
     use super::*;
     use crate::{Beam, Conduction, Foundation, Linear, Load, Polynomial, Power, Scene};
-    use glam::DVec2;
+    use glam::{DMat2, DVec2};
     use proptest::prelude::*;
     use std::vec;
     use std::vec::Vec;
@@ -466,7 +498,7 @@ mod tests {
         q: &Cubic<f64>,
     ) -> [f64; 4] {
         let motion = motion(element.h, eta);
-        let contact = Contact::at(model, element, &motion, || *q, 1.0).unwrap();
+        let contact = Contact::at(model, element, &motion, Some(|| *q), 1.0).unwrap();
         let (e, d) = contact.force(&motion, element.h);
         [e.x, e.y, d.x, d.y]
     }
@@ -513,8 +545,9 @@ mod tests {
             eta.0.iter_mut().zip(along.0).for_each(|(c, a)| *c += step * a);
             forces(model, &element, &eta, q)
         };
-        let contact = Contact::at(model, &element, &motion(h, eta), || *q, 1.0).unwrap();
-        let (ee, er, rr) = contact.tangent(h);
+        let contact = Contact::at(model, &element, &motion(h, eta), Some(|| *q), 1.0).unwrap();
+        let (ee, er, rr) =
+            contact.tangent(h).unwrap_or((Symmetric::default(), DMat2::ZERO, Symmetric::default()));
         let motion = motion(h, along);
         let (fe, fd) = (ee.times(motion.e) + er * motion.d, er.transpose() * motion.e + rr.times(motion.d));
         let sizes = [h, h * h, h, h * h].map(|unit| unit * stiffness);
@@ -604,9 +637,9 @@ mod tests {
             let motion = motion(h, &eta);
             for (touch, level) in [(Touch::High, 1.0), (Touch::Low, -1.0)] {
                 let q = Cubic([level * (height + 1e-9), level * 0.3, level * 0.2, level * 0.1]);
-                let closed = Contact::at(&model, &element, &motion, || q, 1.0).unwrap();
+                let closed = Contact::at(&model, &element, &motion, Some(|| q), 1.0).unwrap();
                 prop_assert_eq!(closed.touch, touch);
-                let split = Contact::split(&model, &element, &eta, &q, 1.0, Tangent::Whole).unwrap();
+                let split = Contact::split(&model, &element, &eta, Some(&q), 1.0, Tangent::Whole).unwrap();
                 for (closed, split) in closed.stiffness.iter().zip(split.stiffness) {
                     prop_assert!((closed - split).abs() < 1e-13 * (7.0 + 4.0));
                 }
@@ -617,9 +650,9 @@ mod tests {
             }
             let plain = scene(Linear(7.0), ());
             let element = self::element(&plain, h);
-            let closed = Contact::at(&plain, &element, &motion, Cubic::default, 0.25).unwrap();
+            let closed = Contact::at(&plain, &element, &motion, Some(Cubic::default), 0.25).unwrap();
             prop_assert_eq!(closed.touch, Touch::Full);
-            let split = Contact::split(&plain, &element, &eta, &Cubic::default(), 0.25, Tangent::Whole).unwrap();
+            let split = Contact::split(&plain, &element, &eta, None, 0.25, Tangent::Whole).unwrap();
             for (closed, split) in closed.stiffness.iter().zip(split.stiffness) {
                 prop_assert!((closed - split).abs() < 1e-13 * 7.0);
             }
@@ -633,7 +666,7 @@ mod tests {
             let slack = 1e-14 * eta.0.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
             let below = points().all(|t| eta.at(t) <= slack);
             let within = points().all(|t| eta.at(t) >= -slack && eta.at(t) <= BOUND + slack);
-            let touch = Touch::of(&model, &element, &eta, || q);
+            let touch = Touch::of(&model, &element, &eta, Some(|| q));
             match touch {
                 Touch::Free => prop_assert!(below),
                 Touch::High => prop_assert!(within && points().all(|t| q.at(t) >= BOUND_Q - 1e-13)),
@@ -643,14 +676,14 @@ mod tests {
             }
             // Without a potential, and with one that acts nowhere, contact alone decides.
             let plain = scene(Linear(7.0), ());
-            let alone = Touch::of(&plain, &self::element(&plain, 0.3), &eta, || q);
+            let alone = Touch::of(&plain, &self::element(&plain, 0.3), &eta, Some(|| q));
             prop_assert_eq!(alone == Touch::Free, touch == Touch::Free);
             prop_assert!(alone != Touch::Full || points().all(|t| eta.at(t) >= -slack));
             prop_assert!(alone != Touch::High && alone != Touch::Low);
             let still = scene(Linear(7.0), 0.0);
-            prop_assert_eq!(Touch::of(&still, &self::element(&still, 0.3), &eta, || q), alone);
+            prop_assert_eq!(Touch::of(&still, &self::element(&still, 0.3), &eta, Some(|| q)), alone);
             let bent = scene(power(1.0), ());
-            let bent = Touch::of(&bent, &self::element(&bent, 0.3), &eta, || q);
+            let bent = Touch::of(&bent, &self::element(&bent, 0.3), &eta, Some(|| q));
             prop_assert_eq!(bent == Touch::Free, alone == Touch::Free);
             prop_assert!(bent == Touch::Free || bent == Touch::Mixed);
         }
@@ -670,7 +703,7 @@ mod tests {
             // t -> 1 - t
             let turned = |c: &Cubic<f64>| Cubic([c.at(1.0), -c.slope(1.0), c.0[2] + 3.0 * c.0[3], -c.0[3]]);
             let stamp = |eta: &Cubic<f64>, q: Cubic<f64>| {
-                Contact::at(&model, &element, &motion(h, eta), || q, 1.0).unwrap().stamp(&element)
+                Contact::at(&model, &element, &motion(h, eta), Some(|| q), 1.0).unwrap().stamp(&element)
             };
             let got = stamp(&eta, q).mirrored(h);
             let want = stamp(&turned(&eta), turned(&q));
@@ -718,7 +751,9 @@ mod tests {
         let element = element(&model, 0.3);
         let q = Cubic([0.1, 0.2, 0.0, 0.0]);
         let motion = motion(0.3, &Cubic([0.3, -0.5, 0.0, 0.0]));
-        let at = |scale| Contact::at(&model, &element, &motion, || q, scale).unwrap().stiffness[0];
+        let at = |scale| {
+            Contact::at(&model, &element, &motion, Some(|| q), scale).unwrap().tangent(1.0).unwrap().2.xx
+        };
         let plain = at(1.0) - at(0.0);
         assert!((at(0.5) - at(0.0) - 0.5 * plain).abs() < 1e-14);
         assert!((plain - 7.0 * 0.6).abs() < 1e-14);
@@ -729,7 +764,7 @@ mod tests {
         let motion = motion(0.3, &Cubic([0.3, 0.1, 0.0, 0.0]));
         let fault = |p: f64, slope: f64| {
             let model = scene(crate::Law(move |_: f64, _: f64| (p, slope)), ());
-            Contact::at(&model, &element(&model, 0.3), &motion, Cubic::default, 1.0).err()
+            Contact::at(&model, &element(&model, 0.3), &motion, Some(Cubic::default), 1.0).err()
         };
         assert_eq!(fault(1.0, 1.0), None);
         assert_eq!(fault(f64::NAN, 1.0), Some(Fault::NotFinite));

@@ -16,13 +16,13 @@
 //! Rows of the block: force and moment; -sigma and -D, the forces that conjugate to u and q. The block is not
 //! symmetric: current makes potential by mu2, potential makes force by mu1.
 
-use super::contact::{Contact, Splits, parts, put};
+use super::Element;
+use super::contact::{Contact, kinks, touching};
 use super::hermite::work;
-use super::{Element, POINTS};
 use crate::cubic::Cubic;
 use crate::law::{truncate, truncate_positive};
 use crate::profile::{Piece, Profile};
-use crate::quadrature::gauss;
+use crate::quadrature::add_moments;
 use crate::real::{Pair, Quad, Real, Square};
 use crate::scene::Model;
 use crate::sweep::Stamp;
@@ -58,13 +58,6 @@ fn unknown<T: Real>(i: usize) -> Form<T> {
     core::array::from_fn(|j| if i == j { T::one() } else { T::zero() })
 }
 
-fn add<T: Real, const N: usize>(moments: &mut [T; N], t: T, mut part: T) {
-    for moment in moments {
-        *moment = *moment + part;
-        part = part * t;
-    }
-}
-
 impl<T: Real> Coupling<T> {
     pub(crate) fn at<M: Model<T>>(model: &M, element: &Element<T, M>, eta: &Cubic<T>, q: &Cubic<T>) -> Self {
         let zero = T::zero();
@@ -74,29 +67,16 @@ impl<T: Real> Coupling<T> {
         }
         let bounds = model.conduction();
         let (most, most_q) = (bounds.truncation, bounds.potential_truncation);
-        let mut splits = Splits::new();
-        put(&mut splits, eta.crossings(zero));
-        put(&mut splits, eta.crossings(most));
-        put(&mut splits, q.crossings(most_q));
-        put(&mut splits, q.crossings(-most_q));
-        for (from, to) in parts(&mut splits) {
-            let length = to - from;
-            if eta.at(from + T::of(0.5) * length) <= zero {
-                continue;
-            }
-            for (z, weight) in gauss::<POINTS>() {
-                let t = from + length * T::of(z);
-                let weight = T::of(weight) * length;
-                let (r, slope) = truncate_positive(eta.at(t), most);
-                let drive = element.mu1.at(t) * truncate(q.at(t), most_q).1 * r;
-                add(&mut coupling.drive, t, weight * drive);
-                let current = weight * (T::of(2.0) * element.mu2.at(t) * r * slope);
-                add(&mut coupling.total, t, current);
-                let lever = element.h * current;
-                add(&mut coupling.stretch, t, lever * element.flexibility.uq.integral(t));
-                add(&mut coupling.charge, t, lever * element.flexibility.qq.integral(t));
-            }
-        }
+        touching(eta, &mut kinks(model, eta, Some(q))).for_each(|(t, weight)| {
+            let (r, slope) = truncate_positive(eta.at(t), most);
+            let drive = element.mu1.at(t) * truncate(q.at(t), most_q).1 * r;
+            add_moments(&mut coupling.drive, t, weight * drive);
+            let current = weight * (T::of(2.0) * element.mu2.at(t) * r * slope);
+            add_moments(&mut coupling.total, t, current);
+            let lever = element.h * current;
+            add_moments(&mut coupling.stretch, t, lever * element.flexibility.uq.integral(t));
+            add_moments(&mut coupling.charge, t, lever * element.flexibility.qq.integral(t));
+        });
         coupling
     }
 
@@ -169,6 +149,7 @@ impl<T: Real> Coupling<T> {
             rr: block(4, 4) + bordered(&rr),
             fe: T::Vec4::of([load.x(), load.y(), zero, zero]),
             fr: T::Vec4::default(),
+            free: false,
         }
     }
 }

@@ -10,7 +10,7 @@
 //! The curvature depends on e alone.
 
 use crate::cubic::Cubic;
-use crate::quadrature::{POINTS, gauss};
+use crate::quadrature::{POINTS, add_moments, gauss};
 use crate::real::{Pair, Real};
 use crate::sweep::pair::Symmetric;
 
@@ -79,11 +79,7 @@ pub(crate) fn loads<T: Real>(h: T, f: [T; POINTS]) -> (T::Vec2, T::Vec2) {
         moments = [f[0], f[0] * T::of(1.0 / 2.0), f[0] * T::of(1.0 / 3.0), f[0] * T::of(1.0 / 4.0)];
     } else {
         for (value, (t, weight)) in f.iter().zip(gauss::<POINTS>()) {
-            let mut part = *value * T::of(weight);
-            for moment in &mut moments {
-                *moment = *moment + part;
-                part = part * T::of(t);
-            }
+            add_moments(&mut moments, T::of(t), *value * T::of(weight));
         }
     }
     work(h, moments)

@@ -12,9 +12,10 @@
 //! where they vary, Galerkin takes the inverse of the mean of K instead of the mean of the inverse and
 //! is off by O(h^2), while this stays exact at nodes.
 
-use super::contact::{parts, put};
+use super::contact::{put, touching};
 use super::hermite::Motion;
 use super::{Element, POINTS, Span};
+use crate::cubic::Side;
 use crate::error::Error;
 use crate::law::truncate_positive;
 use crate::profile::{Piece, Profile, Slot};
@@ -112,6 +113,12 @@ impl<T: Real, M: Model<T>> Flexibility<T, M> {
         (self.uq.integral(t), self.qq.integral(t))
     }
 
+    /// uq and qq, if they are the same on all of the element.
+    #[inline(always)]
+    fn constant(&self) -> Option<(T, T)> {
+        self.uq.constant().zip(self.qq.constant())
+    }
+
     /// Means over the element.
     #[inline(always)]
     pub(crate) fn mean(&self) -> Inverse<T> {
@@ -197,30 +204,41 @@ pub(crate) fn current<T: Real, M: Model<T>>(
 ) -> Source<T> {
     let zero = T::zero();
     let mut source = Source { total: zero, stretch: zero, charge: zero };
-    if !M::Mu2::PRESENT || element.mu2.constant() == Some(zero) {
+    if !element.conducts_into() {
         return source;
     }
     let most = model.conduction().truncation;
     let eta = motion.cubic();
-    if eta.side(zero) == crate::cubic::Side::Below {
+    let side = eta.side(zero);
+    if side == Side::Below {
+        return source;
+    }
+    let k = element.flexibility.constant();
+    if let (Side::Above, Some(mu2), Some((stretch, charge))) = (side, element.mu2.constant(), k)
+        && eta.side(most) == Side::Below
+    {
+        // mu2 and K^-1 stand before the integrals, which are of a polynomial that four points integrate.
+        let (mut square, mut lever) = (zero, zero);
+        for (t, weight) in gauss::<POINTS>() {
+            let r = eta.at(T::of(t));
+            square = square + T::of(weight) * (r * r);
+            lever = lever + T::of(weight * t) * (r * r);
+        }
+        source.total = element.h * mu2 * square;
+        let lever = element.h * element.h * mu2 * lever;
+        (source.stretch, source.charge) = (lever * stretch, lever * charge);
         return source;
     }
     let mut splits: ArrayVec<T, 6> = ArrayVec::new();
     put(&mut splits, eta.crossings(zero));
     put(&mut splits, eta.crossings(most));
-    for (from, to) in parts(&mut splits) {
-        let length = to - from;
-        if eta.at(from + T::of(0.5) * length) <= zero {
-            continue;
-        }
-        for (z, weight) in gauss::<POINTS>() {
-            let t = from + length * T::of(z);
-            let r = truncate_positive(eta.at(t), most).0;
-            let part = element.h * (T::of(weight) * length) * element.mu2.at(t) * (r * r);
-            source.total = source.total + part;
-            source.stretch = source.stretch + element.h * part * element.flexibility.uq.integral(t);
-            source.charge = source.charge + element.h * part * element.flexibility.qq.integral(t);
-        }
-    }
+    touching(&eta, &mut splits).for_each(|(t, weight)| {
+        let r = truncate_positive(eta.at(t), most).0;
+        let part = element.h * weight * element.mu2.at(t) * (r * r);
+        source.total = source.total + part;
+        let (stretch, charge) = element.flexibility.integral(t);
+        source.stretch = source.stretch + element.h * part * stretch;
+        source.charge = source.charge + element.h * part * charge;
+    });
     source
 }

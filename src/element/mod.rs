@@ -152,6 +152,11 @@ impl<T: Real, M: Model<T>> Element<T, M> {
         })
     }
 
+    /// The bending stiffness, its mean in the last entry of the bending energy, 4 C / h \[N m^2\].
+    pub(crate) fn stiffness(&self) -> T {
+        self.bending.yy * self.h * T::of(0.25)
+    }
+
     /// The stiffness of a foundation that is rigid to this element \[N/m^2\].
     pub(crate) fn rigid(&self) -> T {
         // 4 C / h is the last entry of the bending energy.
@@ -184,7 +189,12 @@ impl<T: Real, M: Model<T>> Element<T, M> {
     /// The larger one of the moments at both ends, without the contact's part inside the element.
     #[inline(always)]
     pub(crate) fn largest_moment(&self, e: T::Vec2) -> T {
-        let force = self.deforming_force(e);
+        self.moments(self.deforming_force(e))
+    }
+
+    /// The larger one of the moments at both ends by force and moment at the left one.
+    #[inline(always)]
+    pub(crate) fn moments(&self, force: T::Vec2) -> T {
         let (left, right) = (force.y().abs(), (force.y() - self.h * force.x()).abs());
         if left > right { left } else { right }
     }

@@ -40,7 +40,7 @@ use crate::element::hermite::Motion;
 use crate::error::Error;
 use crate::law::{Compliance, truncate};
 use crate::newton::nested::{self, Answer};
-use crate::newton::{Context, Count, Halt, Level, Report, Settings, Status, potential};
+use crate::newton::{Context, Count, Halt, Level, Report, Settings, Status};
 use crate::problem::Prepared;
 use crate::profile::{Piece, Profile};
 use crate::quadrature::{POINTS, gauss as rule};
@@ -114,7 +114,7 @@ impl<T: Real, M: Model<T>> Prepared<'_, T, M> {
         settings.validate()?;
         self.restore();
         let elements = self.elements();
-        let places = &mut self.places[..elements];
+        let places = self.places.get_mut(..elements).unwrap_or_default();
         let rule = match method {
             Method::Elementwise => Rule::Elementwise,
             Method::Gauss => Rule::Gauss,
@@ -398,7 +398,9 @@ impl<'a, T: Real, M: Model<T>> Sight<'a, T, M> {
     fn new(model: &'a M, place: &'a Place<T, M>, left: &Node<T, M>, context: &Context<'_, T, M>) -> Self {
         let Place { element, work } = place;
         let State { e, d } = work.states[0];
-        let q = potential(element, work, left, &context.onto);
+        let ratio = context.onto.as_ref();
+        let q =
+            ratio.map_or_else(Cubic::default, |ratio| electric::potential(element, left, &work.node, ratio));
         Self { model, element, eta: Motion::new(element.h, e, d).cubic(), q }
     }
 

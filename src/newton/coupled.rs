@@ -11,16 +11,18 @@
 //! *Globalised by work.* No norm of the residual serves as a merit: where the conduction force outweighs the
 //! foundation (mu1 R(q) < -k) the beam snaps towards it, and on the way every norm grows. But the work of the
 //! residual along a step says whether the step goes where the forces pull: with the potential as it is it is
-//! the derivative of the energy. A Newton step that would do negative work leads back to an unstable
+//! the derivative of the energy. A Newton step along which the residual would do positive work leads back to an unstable
 //! equilibrium, or to the ghost of one; then the step with the tangent's nondecreasing part alone is
 //! taken, which is symmetric, positive definite but for the coupling, and always downhill: the concave part
 //! of the energy is taken as linear (the convex-concave procedure). Either step goes as far as the forces
 //! pull, beyond its full length too, so that a snap through takes a few steps. A solution exists, as the
 //! terms that are not monotone are bounded; beyond (2.15) it need not be the only one.
 
-use super::{Context, Count, Halt, Level, Outcome, Residual, linearise, potential};
+use super::{Context, Count, Halt, Level, Outcome, Residual};
+use crate::electric;
 use crate::element::contact::{Contact, Tangent};
 use crate::element::coupled::Coupling;
+use crate::element::hermite::Motion;
 use crate::law::{Compliance, truncate, truncate_positive};
 use crate::profile::{Piece, Profile, Slot};
 use crate::real::{Pair, Quad, Real};
@@ -31,7 +33,7 @@ use crate::sweep::{Condensed, End};
 
 /// Share of a change that comes back through the potential from which on slow progress is laid to it.
 const TIED: f64 = 0.1;
-/// A step is never taken more often than this, however far the forces pull.
+/// A step is never taken farther than so many times its length, however far the forces pull.
 const FARTHEST: f64 = 1e6;
 /// Share of the work at its start that a searched step may leave.
 const SLACK: f64 = 0.2;
@@ -75,7 +77,7 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
             drive = drive.max(element.mu1.mean() * r);
             current = current.max(element.mu2.mean() * r);
             resistance = resistance.max(element.flexibility.mean().qq);
-            softest = softest.min(element.bending.yy * element.h * T::of(0.25));
+            softest = softest.min(element.stiffness());
             left = right;
         }
         let square = model.length() * model.length();
@@ -103,12 +105,12 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
             if before.relative() <= T::of(4.0) * before.floor() && rounds_since_best >= 2 {
                 return Ok(Outcome::Floor);
             }
-            let mut start = match self.step(here.open, scale, Tangent::Whole, count) {
+            let mut start = match self.coupled_step(here.open, scale, Tangent::Whole, count) {
                 Err(Halt::Breakdown(_)) => T::zero(),
                 start => start?,
             };
             if start >= T::zero() {
-                start = self.step(here.open, scale, Tangent::Nondecreasing, count)?;
+                start = self.coupled_step(here.open, scale, Tangent::Nondecreasing, count)?;
             }
             here = self.go(T::one(), scale, count)?;
             if here.residual.mismatch > T::of(0.5) * before.mismatch && start < T::zero() {
@@ -125,10 +127,10 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
     fn trial(&mut self, scale: T, count: &mut Count) -> Result<Trial<T>, Halt> {
         count.spend(self.places.len())?;
         let open = self.join_nodes();
-        self.electric();
-        let residual = self.balance(scale, true)?;
+        self.renew();
+        let residual = self.balance(scale)?;
         let work = self.places.iter().fold(T::zero(), |sum, Place { work, .. }| {
-            sum + work.link().map_or(T::zero(), |link| link.load.times(link.step.e))
+            sum + work.link().map_or(T::zero(), |link| work.open.times(link.step.e))
         });
         Ok(Trial { residual, work, open })
     }
@@ -180,7 +182,13 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
     /// The step at the current state, into the links; `open` is by how much the left end has to move. The work of
     /// the residual at its beginning.
     #[inline(never)]
-    fn step(&mut self, open: T::Vec2, scale: T, tangent: Tangent, count: &mut Count) -> Result<T, Halt> {
+    fn coupled_step(
+        &mut self,
+        open: T::Vec2,
+        scale: T,
+        tangent: Tangent,
+        count: &mut Count,
+    ) -> Result<T, Halt> {
         count.spend(self.places.len())?;
         count.iterations += 1;
         let Context { model, ref onto, .. } = *self.context;
@@ -191,18 +199,21 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
         };
         let (left, right) = (clamped(open), clamped(T::Vec2::default()));
         let (current, last) = (self.current, self.places.len() - 1);
+        let scale = self.scaling(scale);
         let mut node = self.node;
         let mut part = left.condensed;
         for (i, Place { element, work }) in self.places.iter_mut().enumerate() {
-            let (mut contact, motion) = linearise(model, element, work, &node, current, onto, scale)
-                .map_err(|fault| Halt::Law(i, fault))?;
-            let q = potential(element, work, &node, onto);
-            if tangent == Tangent::Nondecreasing {
-                contact = Contact::nondecreasing(model, element, &motion, &q, scale)
-                    .map_err(|fault| Halt::Law(i, fault))?;
+            let State { e, d } = work.states[current];
+            let motion = Motion::new(element.h, e, d);
+            let q = onto.as_ref().map(|ratio| electric::potential(element, &node, &work.node, ratio));
+            let q = q.unwrap_or_default();
+            let contact = match tangent {
+                Tangent::Whole => Contact::at(model, element, &motion, Some(|| q), scale(i)),
+                Tangent::Nondecreasing => Contact::nondecreasing(model, element, &motion, &q, scale(i)),
             }
+            .map_err(|fault| Halt::Law(i, fault))?;
             let coupling = Coupling::at(model, element, &motion.cubic(), &q);
-            let stamp = coupling.stamp(element, &contact, -work.load(1 - current));
+            let stamp = coupling.stamp(element, &contact, -work.open);
             let h = element.h;
             let absorbed = if i == 0 { left.join(&part, &stamp, h) } else { part.absorb(&stamp, h) };
             let (next, factor) = absorbed.ok_or(Halt::Breakdown(i))?;
@@ -215,11 +226,12 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
         let mut near = right.close(&part).ok_or(Halt::Breakdown(last))?;
         let mut along = T::zero();
         for Place { element, work } in self.places.iter_mut().rev() {
+            let open = work.open;
             if let Some(link) = work.link_mut() {
                 let (e, far) = link.factor.substitute(near, element.h);
                 let ([ew, et, ..], [w, theta, ..]) = (e.array(), near.array());
                 link.step = State { e: T::Vec2::of(ew, et), d: T::Vec2::of(w, theta) };
-                along = along + link.load.times(link.step.e);
+                along = along + open.times(link.step.e);
                 near = far;
             }
         }
@@ -268,10 +280,9 @@ mod tests {
         level.best = None;
         let here = level.trial(1.0, &mut count).unwrap();
         level.best = Some((level.current, here.residual));
-        level.step(here.open, 1.0, Tangent::Whole, &mut count).unwrap();
-        let loads = |level: &Level<'_, '_, f64, M>| -> Vec<_> {
-            level.places.iter().map(|p| p.work.link().unwrap().load).collect()
-        };
+        level.coupled_step(here.open, 1.0, Tangent::Whole, &mut count).unwrap();
+        let loads =
+            |level: &Level<'_, '_, f64, M>| -> Vec<_> { level.places.iter().map(|p| p.work.open).collect() };
         let before = loads(level);
         level.go(t, 1.0, &mut count).unwrap();
         let after = loads(level);
@@ -340,8 +351,8 @@ mod tests {
             let here = level.trial(1.0, &mut count).unwrap();
             level.best = Some((level.current, here.residual));
             // The whole tangent leads uphill: the foundation pulls more than the beam holds.
-            assert!(level.step(here.open, 1.0, Tangent::Whole, &mut count).unwrap() > 0.0);
-            assert!(level.step(here.open, 1.0, Tangent::Nondecreasing, &mut count).unwrap() < 0.0);
+            assert!(level.coupled_step(here.open, 1.0, Tangent::Whole, &mut count).unwrap() > 0.0);
+            assert!(level.coupled_step(here.open, 1.0, Tangent::Nondecreasing, &mut count).unwrap() < 0.0);
         });
     }
 }

@@ -4,18 +4,17 @@
 //!
 //! ```text
 //!     u, q, sigma, D  from the penetration, where conduction goes both ways        (2), (3)
-//!     forward sweep:  linearise the contact of each element, condense it, and
-//!                     measure the residual of the state that it was linearised at
-//!     backward sweep: the new state                                                (3.8)
+//!     forward sweep:  linearise the contact of each element and condense it
+//!     backward sweep: the new state, and how far it is from the one before         (3.8)
 //! ```
 //!
 //! *Residual.* The deformation of an element gives its moment: linear, known by its values at both ends,
 //! and formed from the relative unknowns e, free of the cancellation that differences of nodal values
 //! suffer. Equilibrium gives the same moment in another way. The residual is the largest difference of the
-//! two, over the largest moment. While iterating, a sweep compares each element with the condensed left
-//! part; this takes no extra pass. Before a solve says `Converged`, [`Level::check`] compares with the
-//! moment that statics gives from loads and contact forces alone, so that nothing that the recursion may
-//! have lost goes unseen. Where the contact force is monotone this residual bounds the error: the statical
+//! two, over the largest moment ([`Level::balance`]): statics takes loads and contact forces alone, so that
+//! nothing that the recursion may have lost goes unseen. While iterating, the change of the moments by a step says
+//! how far off the state before it was; this takes no extra pass. Statics is asked once a step is short, and before
+//! a solve says `Converged`. Where the contact force is monotone the residual bounds the error: the statical
 //! moment is in equilibrium, and so differs from that of the deformation by at least as much, in the energy
 //! norm, as the latter does from the solution's. Shear is not compared: 1/h times the rounding of e is in
 //! it, which is no error of the moment.
@@ -23,7 +22,8 @@
 //! *Whole states and increments.* A sweep solves for the whole state: what did not change need not be swept
 //! again. Its rounding, a few units times the root of N, stays in the state however often it is repeated.
 //! So where the residual shows it a last sweep solves for an increment, with what is missing of equilibrium
-//! and of compatibility for its data; both are found by compensated sums ([`Level::polish`]).
+//! and of compatibility for its data; both are found by compensated sums ([`Level::polish`]). On many elements the
+//! first step on the finest mesh is one already ([`Level::advance`]).
 //!
 //! *Only what changed.* Both ends are condensed towards a meeting point among the elements whose matrices
 //! changed; the parts outside them stay as they are. Convergence is decided on all elements.
@@ -38,7 +38,6 @@ mod settings;
 
 pub use settings::{Report, Settings, Status};
 
-use crate::cubic::Cubic;
 use crate::electric::{self, Ratio};
 use crate::element::Element;
 use crate::element::contact::{Contact, Fault, Touch};
@@ -50,7 +49,7 @@ use crate::real::{Pair, Real, Sum};
 use crate::scene::Model;
 use crate::storage::{Node, Place, State, Work};
 use crate::sweep::pair::Bending;
-use crate::sweep::{Block, End};
+use crate::sweep::{Block, End, Stamp};
 use core::ops::Range;
 
 /// Differences between moments by deformation and by equilibrium, and what to compare them with.
@@ -58,9 +57,6 @@ use core::ops::Range;
 pub(crate) struct Residual<T> {
     /// Largest difference of the moments \[N m\].
     mismatch: T,
-    /// Largest difference of the forces, times the length \[N m\]: how the moments would differ farther on.
-    /// In it is rounding of e times 1/h.
-    lever: T,
     /// Largest moment \[N m\].
     size: T,
     /// Sum of the sizes of loads and contact forces, times the length \[N m\].
@@ -71,16 +67,14 @@ pub(crate) struct Residual<T> {
 
 impl<T: Real> Residual<T> {
     fn none() -> Self {
-        Self { mismatch: T::zero(), lever: T::zero(), size: T::zero(), load: T::zero(), sum: T::zero() }
+        Self { mismatch: T::zero(), size: T::zero(), load: T::zero(), sum: T::zero() }
     }
 
-    /// Compares an element's force and moment at one end, `held`, with what it should be; h leads to its
-    /// other end.
+    /// What an element's force and moment at one end are off by; h leads to its other end.
     #[inline(always)]
-    fn see(&mut self, gap: T::Vec2, held: T::Vec2, h: T) {
+    fn see(&mut self, gap: T::Vec2, h: T) {
         let far = gap.y() - h * gap.x();
         self.mismatch = larger(larger(self.mismatch, gap.y().abs()), far.abs());
-        self.measure(held, h);
         self.sum = self.sum + far;
     }
 
@@ -91,19 +85,9 @@ impl<T: Real> Residual<T> {
         self.size = larger(larger(self.size, held.y().abs()), far.abs());
     }
 
-    /// Counts a force that is out of balance with the lever `length`.
-    #[inline(always)]
-    fn see_force(&mut self, gap: T, length: T) {
-        self.lever = larger(self.lever, gap.abs() * length);
-    }
-
     /// The relative residual; zero where there is no moment at all.
     pub(crate) fn relative(&self) -> T {
-        Self::over(self.mismatch.max(self.lever), self.size)
-    }
-
-    fn over(mismatch: T, size: T) -> T {
-        if mismatch == T::zero() { T::zero() } else { mismatch / size }
+        if self.mismatch == T::zero() { T::zero() } else { self.mismatch / self.size }
     }
 
     /// What rounding alone may leave: some units in the last place of the moment and of the sums of forces
@@ -117,7 +101,7 @@ impl<T: Real> Residual<T> {
     }
 
     fn is_finite(&self) -> bool {
-        (self.mismatch + self.lever + self.size + self.sum).is_finite()
+        (self.mismatch + self.size + self.sum).is_finite()
     }
 }
 
@@ -187,19 +171,24 @@ pub(crate) struct Level<'a, 'b, T: Real, M: Model<T>> {
     pub(crate) fresh: bool,
     /// Elements whose law the continuation in the stiffness scales.
     scaled: Range<usize>,
-    /// The largest moment of the current state, as the last substitution saw it \[N m\].
-    size: T,
 }
 
 /// What a sweep solves for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Solve<T: Real> {
     State,
-    /// An increment, where the element's loads are in the spare state and the left end has to move by
-    /// `open`.
+    /// An increment, loaded by what the elements leave open of equilibrium; the left end has to move by `open`.
     Increment {
         open: T::Vec2,
     },
+}
+
+/// What an iteration is to reach.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Goal<T> {
+    /// The relative residual; on the finest mesh that by statics, else that of a sweep, and one step more.
+    pub(crate) stop: T,
+    pub(crate) finest: bool,
 }
 
 /// How an iteration on one mesh ended, if it was not halted.
@@ -223,8 +212,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     pub(crate) fn new(context: &'b Context<'a, T, M>, places: &'b mut [Place<T, M>]) -> Self {
         let meeting = (places.len() / 2).max(1);
         let scaled = 0..places.len();
-        let (node, size) = (Node::default(), T::zero());
-        Self { context, places, node, current: 0, best: None, meeting, fresh: false, scaled, size }
+        Self { context, places, node: Node::default(), current: 0, best: None, meeting, fresh: false, scaled }
     }
 
     /// Is bending in a loop with the potential?
@@ -238,22 +226,32 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         self.node = electric::solve::<T, M, true>(self.context.model, self.places, self.current);
     }
 
-    /// The same with the rounding of plain sums, as good as an iteration needs.
-    fn electric_rounded(&mut self) {
-        self.node = electric::solve::<T, M, false>(self.context.model, self.places, self.current);
+    /// The same where bending moves them.
+    fn renew(&mut self) {
+        if self.two_way() {
+            self.electric();
+        }
     }
 
-    /// Iterates until the relative residual is at most `stop`, at most `most` times, with the law scaled by
-    /// `scale`. The current state is then the best one found.
+    /// The same with the rounding of plain sums, as good as an iteration needs.
+    fn renew_rounded(&mut self) {
+        if self.two_way() {
+            self.node = electric::solve::<T, M, false>(self.context.model, self.places, self.current);
+        }
+    }
+
+    /// Iterates to the goal, at most `most` times, with the law scaled by `scale`. The current state is then the best
+    /// one found.
     pub(crate) fn iterate(
         &mut self,
         scale: T,
-        stop: T,
+        goal: Goal<T>,
         most: usize,
         count: &mut Count,
     ) -> Result<Outcome, Halt> {
-        let all = 0..self.places.len();
-        self.iterate_from(all, scale, stop, most, count)
+        // The scale is a new one wherever the beam touches.
+        let changed = self.changed(true);
+        self.iterate_from(changed, scale, goal, most, count)
     }
 
     /// The same, where only the elements `changed` have changed since they were condensed last.
@@ -261,16 +259,16 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         &mut self,
         changed: Range<usize>,
         scale: T,
-        stop: T,
+        goal: Goal<T>,
         most: usize,
         count: &mut Count,
     ) -> Result<Outcome, Halt> {
         self.best = None;
         let changed = if self.fresh { changed } else { 0..self.places.len() };
-        let mut outcome = self.descend(changed, scale, stop, most, count);
+        let mut outcome = self.descend(changed, scale, goal, most, count);
         if outcome == Ok(Outcome::Stalled) && !self.convex() {
             self.keep_best();
-            outcome = self.descend_coupled(scale, stop, most, count);
+            outcome = self.descend_coupled(scale, goal.stop, most, count);
         }
         if outcome != Ok(Outcome::Converged) {
             self.keep_best();
@@ -280,80 +278,112 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
 
     /// The beam without its foundation's law, from a state that may be none: it need not satisfy the
     /// conditions at the ends.
-    pub(crate) fn free(&mut self, count: &mut Count) -> Result<Range<usize>, Halt> {
+    pub(crate) fn free(&mut self, count: &mut Count) -> Result<(), Halt> {
         let all = 0..self.places.len();
         self.best = None;
-        if self.two_way() {
-            self.electric_rounded();
-        }
+        self.renew_rounded();
         count.spend(all.len())?;
         self.condense(all, T::zero(), Solve::State)?;
         count.iterations += 1;
-        self.substitute(false).ok_or(Halt::Breakdown(self.meeting - 1))
+        self.substitute(false).map(|_| ()).ok_or(Halt::Breakdown(self.meeting - 1))
     }
 
+    /// Is the current state the solution already?
+    pub(crate) fn holds(&mut self, stop: T, count: &mut Count) -> Result<Outcome, Halt> {
+        let residual = self.check(T::one(), count)?;
+        self.best = Some((self.current, residual));
+        Ok(if residual.relative() <= stop { Outcome::Converged } else { Outcome::Stalled })
+    }
+
+    /// Full Newton steps, and where these do not help steps down the energy.
+    ///
+    /// How far a step moves the beam says how far off the state before it was. Only statics can say that a solve has
+    /// converged; it is asked, on all elements, once a step is so short that it may have been the last.
     fn descend(
         &mut self,
         mut changed: Range<usize>,
         scale: T,
-        stop: T,
+        goal: Goal<T>,
         most: usize,
         count: &mut Count,
     ) -> Result<Outcome, Halt> {
-        if self.two_way() {
-            self.electric_rounded();
-        }
-        let mut least = T::infinity();
-        let mut rounds_since_best = 0;
+        let stop = goal.stop;
+        self.renew_rounded();
+        // The shortest step, and the least residual where steps went down the energy.
+        let (mut least, mut lowest) = (T::infinity(), T::infinity());
+        let (mut rounds_since_best, mut stuck) = (0, 0);
         let (mut slow, mut last) = (0, T::infinity());
-        // What rounding may leave of a sweep's residual: 1/h times that of e is in the forces.
+        let mut short: Option<T> = None;
+        // What rounding may leave of a step.
         let blur = T::of(64.0) * T::epsilon() * T::from(self.places.len()).unwrap_or(T::one());
         for _ in 0..=most {
             let mut residual = Residual::none();
-            // Only statics can say that a solve has converged.
-            let mut checked = false;
             if !changed.is_empty() {
-                let swept = self.extent(&changed);
-                count.spend(swept.len())?;
-                let condensed = self.condense(swept, scale, Solve::State);
+                let stepped = self.step(&changed, scale, count);
                 // There is a way back where a state was good before.
-                residual = if self.best.is_some() { self.tried(condensed)? } else { condensed? };
+                residual = if self.best.is_some() { self.tried(stepped)? } else { stepped? };
+                if !residual.is_finite() && self.best.is_some_and(|(best, _)| best == self.current) {
+                    // The state that seemed best cannot be gone on from: the one before it could.
+                    self.best = Some((1 - self.current, residual));
+                }
+                // Without an edge of contact the equations are all but linear.
+                short = Some(match short {
+                    None => T::of(if self.edges(&changed) { SHORT } else { LINEAR }),
+                    Some(before) => before.min(T::of(QUADRATIC)),
+                });
             }
+            let moved = residual.relative();
+            if !goal.finest && moved <= stop {
+                return Ok(Outcome::Converged);
+            }
+            let done = moved <= stop.max(blur);
             // Rounding may be all that is left without being known beforehand: a gap far above the beam's own
-            // bending adds to it. A sweep that gains nothing then asks statics, too.
-            let swept = residual.relative();
-            let done = swept <= stop.max(blur).max(residual.floor());
-            let near = swept <= T::of(NEAR) && swept > T::of(0.5) * last;
-            if done || near || rounds_since_best == IDLE {
-                // Nothing changed, or as little as a sweep can tell: ask statics, on all elements.
+            // bending adds to it. Steps that gain nothing then ask statics, too.
+            let near = moved <= T::of(NEAR) && moved > T::of(0.5) * last;
+            let mut checked = done || near || rounds_since_best == IDLE;
+            if checked {
                 residual = self.settle(scale, stop, count)?;
-                checked = true;
+            } else if goal.finest && short.is_some_and(|short| moved <= short) {
+                let balanced = self.check(scale, count);
+                let balanced = self.tried(balanced)?;
+                checked = balanced.relative() <= stop;
+                // Not twice in vain: the steps have to grow far shorter before it is asked again.
+                short = Some(T::of(1e-3) * moved);
+                if checked {
+                    residual = balanced;
+                }
+            } else {
+                self.renew_rounded();
+            }
+            if checked && residual.relative() <= stop {
+                self.best = Some((self.current, residual));
+                return Ok(Outcome::Converged);
             }
             if rounds_since_best >= FULL_STEPS || !residual.is_finite() {
-                // Full steps do not help from here: down the energy from the best state, unless there are
-                // better ways to start, or no energy.
+                // Full steps do not help from here: down the energy, unless there are better ways to start, or no
+                // energy.
                 if most < usize::MAX || !self.convex() {
                     return Ok(Outcome::Stalled);
                 }
                 self.keep_best();
-                match self.lower(T::of(0.5) * least, scale, stop, count)? {
-                    Some(lower) => residual = lower,
+                match self.lower(T::of(0.5) * lowest, scale, stop, count)? {
+                    Some(lower) if lower.relative() <= stop => return Ok(Outcome::Converged),
+                    Some(lower) => lowest = lower.relative(),
+                    // Rounding of a steep law may hide where the energy falls, but not from full steps for good.
+                    None if stuck < STUCK => stuck += 1,
                     None => return Ok(Outcome::Floor),
                 }
-                checked = true;
+                // Full steps again.
+                (least, last, rounds_since_best) = (T::infinity(), T::infinity(), 0);
+                changed = if self.fresh { self.changed(false) } else { 0..self.places.len() };
+                continue;
             }
             let relative = residual.relative();
-            if self.best.is_none_or(|(_, best)| relative < best.relative()) {
-                self.best = Some((self.current, residual));
-            }
-            if checked && relative <= stop {
-                return Ok(Outcome::Converged);
-            }
             let halved = relative < T::of(0.5) * least;
             rounds_since_best = if halved { 0 } else { rounds_since_best + 1 };
             least = least.min(relative);
             // At the floor no progress can be expected; above it, patience ends.
-            if least <= T::of(4.0) * residual.floor() && rounds_since_best >= FLOOR_STEPS {
+            if checked && relative <= T::of(4.0) * residual.floor() && rounds_since_best >= FLOOR_STEPS {
                 return Ok(Outcome::Floor);
             }
             slow += usize::from(relative > T::of(0.1) * last);
@@ -361,18 +391,32 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             if slow > SLOW && self.is_tied() {
                 return Ok(Outcome::Stalled);
             }
-            changed = self.substitute(false).ok_or(Halt::Breakdown(self.meeting - 1))?;
-            count.iterations += 1;
-            if self.two_way() {
-                self.electric_rounded();
-                changed = self.changed();
-            }
+            changed = self.changed(false);
         }
         Ok(Outcome::Stalled)
     }
 
-    /// From the current state, steps that lower the energy, each cut to where it is least, until the
-    /// residual is at most `enough`; `None` where they lower it by no more than rounding.
+    /// Had one of the elements an edge of contact in it when they were swept?
+    fn edges(&self, swept: &Range<usize>) -> bool {
+        self.places[swept.clone()].iter().any(|place| place.work.touch == Touch::Edge)
+    }
+
+    /// One full step, where the elements `changed` have changed. By how much it moved the beam: the change of the
+    /// moments. The best state is the one after the shortest step.
+    fn step(&mut self, changed: &Range<usize>, scale: T, count: &mut Count) -> Result<Residual<T>, Halt> {
+        let swept = self.extent(changed);
+        count.spend(swept.len())?;
+        self.condense(swept, scale, Solve::State)?;
+        let residual = self.substitute(false).ok_or(Halt::Breakdown(self.meeting - 1))?;
+        if self.best.is_none_or(|(_, best)| residual.relative() < best.relative()) {
+            self.best = Some((self.current, residual));
+        }
+        count.iterations += 1;
+        Ok(residual)
+    }
+
+    /// From the current state, steps that lower the energy, each cut to where it is least, until the residual has
+    /// halved and is at most `enough`; `None` where they lower it by no more than rounding.
     ///
     /// The steps are increments: a sweep for the whole state has rounding in it that may be more than what is
     /// left to go.
@@ -384,6 +428,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         count: &mut Count,
     ) -> Result<Option<Residual<T>>, Halt> {
         let mut residual = self.check(scale, count)?;
+        let enough = enough.min(T::of(0.5) * residual.relative());
         while residual.relative() > enough.max(stop) {
             let before = residual;
             self.best = Some((self.current, before));
@@ -564,7 +609,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             let (from, to) = (work.states[1 - self.current], work.states[self.current]);
             let State { e, d } = from.toward(to, t);
             let motion = Motion::new(element.h, e, d);
-            let q = || potential(element, work, node, onto);
+            let q = onto.as_ref().map(|ratio| || electric::potential(element, node, &work.node, ratio));
             let contact = match Contact::at(model, element, &motion, q, scale(i)) {
                 Err(Fault::NotFinite) => {
                     *fault = Some(Halt::Law(i, Fault::NotFinite));
@@ -612,7 +657,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             let left = element.right - element.h;
             let (own, _) = hermite::loads(element.h, [load; POINTS]);
             let before = T::Vec2::of(load * left, T::of(-0.5) * load * left * left);
-            work.set_load(spare, -(own + before));
+            work.open = -(own + before);
         }
         let all = 0..self.places.len();
         let open = T::Vec2::default();
@@ -638,19 +683,13 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             work.states[spare].d = work.states[current].d;
         }
         let mut open = self.join_nodes();
-        if self.two_way() {
-            self.electric();
-        }
-        let mut residual = self.balance(scale, true)?;
+        let mut residual = self.balance(scale)?;
         if self.best.is_some_and(|(_, best)| residual.relative() > T::of(2.0) * best.relative()) {
             for Place { work, .. } in self.places.iter_mut() {
                 work.states[current].d = work.states[spare].d;
             }
             open = T::Vec2::default();
-            if self.two_way() {
-                self.electric();
-            }
-            residual = self.balance(scale, true)?;
+            residual = self.balance(scale)?;
         }
         self.best = Some((current, residual));
         Ok(open)
@@ -688,11 +727,36 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         -T::Vec2::of(w.value(), theta.value())
     }
 
+    /// From a state that is all but the solution: one step for an increment. A sweep for the whole state would leave
+    /// rounding in it that grows with the number of elements.
+    pub(crate) fn advance(&mut self, stop: T, count: &mut Count) -> Result<Outcome, Halt> {
+        count.spend(self.places.len())?;
+        let open = self.join_nodes();
+        self.renew();
+        let residual = self.balance(T::one())?;
+        self.best = Some((self.current, residual));
+        let residual = self.increment(open, T::one(), count)?;
+        self.best = Some((self.current, residual));
+        Ok(if residual.relative() <= stop { Outcome::Converged } else { Outcome::Stalled })
+    }
+
+    /// Are there so many elements that the rounding of sweeps shows before that of the contact?
+    pub(crate) fn is_fine(&self) -> bool {
+        self.places.len() >= FINE
+    }
+
+    /// Units in the last place of a residual that is good enough: rounding that grows with the elements is for the
+    /// polish, and few elements have little of it.
+    pub(crate) fn polished(&self) -> T {
+        let few = T::of(FEW) / T::from(self.places.len()).unwrap_or(T::one());
+        T::of(128.0) * (few * few).max(T::one())
+    }
+
     /// Takes the rounding of the sweeps out of a converged state, where its residual is more than `units` in the last
     /// place; keeps what is better.
-    pub(crate) fn refine(&mut self, units: f64, count: &mut Count) -> Result<(), Halt> {
+    pub(crate) fn refine(&mut self, units: T, count: &mut Count) -> Result<(), Halt> {
         let Some((_, best)) = self.best else { return Ok(()) };
-        if best.relative() <= T::of(units) * T::epsilon() {
+        if best.relative() <= units * T::epsilon() {
             return Ok(());
         }
         let refined = self.rejoin(T::one(), count).and_then(|open| {
@@ -713,7 +777,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
 
     /// The residual of the current state by statics, if it can be had.
     pub(crate) fn assess(&mut self) {
-        self.best = self.balance(T::one(), false).ok().map(|residual| (self.current, residual));
+        self.best = self.balance(T::one()).ok().map(|residual| (self.current, residual));
     }
 
     /// Makes the best state the current one.
@@ -722,9 +786,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             && best != self.current
         {
             self.current = best;
-            if self.two_way() {
-                self.electric();
-            }
+            self.renew();
         }
     }
 
@@ -738,21 +800,18 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     }
 
     /// Linearises the elements of `swept` at the current state and condenses them, from both sides towards
-    /// the meeting point; the residual of the state there.
+    /// the meeting point.
     #[inline(never)]
-    fn condense(&mut self, swept: Range<usize>, scale: T, solve: Solve<T>) -> Result<Residual<T>, Halt> {
+    fn condense(&mut self, swept: Range<usize>, scale: T, solve: Solve<T>) -> Result<(), Halt> {
         let Context { model, ref onto, .. } = *self.context;
         let scale = self.scaling(scale);
         let (mut left, mut right) = (self.context.left, self.context.right);
         if let Solve::Increment { open } = solve {
             (left.value, right.value) = (open, T::Vec2::default());
         }
-        let spare = 1 - self.current;
         let step = solve != Solve::State;
         let whole = swept.len() == self.places.len();
         let (current, meeting, last) = (self.current, self.meeting, self.places.len() - 1);
-        let length = model.length();
-        let mut residual = Residual::none();
         let (mut from_left, mut from_right) = (swept.start.min(meeting), swept.end.max(meeting));
         let mut west = match self.places.get(..from_left).and_then(<[_]>::last) {
             Some(before) => before.work.condensed,
@@ -764,32 +823,16 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             if from_left < meeting {
                 let i = from_left;
                 let (before, Place { element, work }) = at(self.places, i).ok_or(Halt::Breakdown(i))?;
-                let (node, far) = match before {
-                    Some(before) => (before.work.node, before.work.states[current].d),
-                    None => (self.node, T::Vec2::default()),
-                };
-                let h = element.h;
-                let (contact, motion) = linearise(model, element, work, &node, current, onto, scale(i))
+                let before = before.map_or(self.node, |before| before.work.node);
+                let stamp = stamp(model, element, work, &before, current, onto, scale(i), step)
                     .map_err(|fault| Halt::Law(i, fault))?;
-                let (ce, cd) = contact.force(&motion, h);
-                let held = element.deforming_force(motion.e) + ce;
-                if i > 0 {
-                    let gap = beyond(west.force(far) + held, west.rounding(far), held, h);
-                    residual.see(gap, held, h);
-                    residual.see_force(gap.x(), length);
-                } else {
-                    residual.measure(held, h);
-                }
-                residual.load = residual.load + contact.size(&motion, cd, h) + element.fr.x().abs();
-                let mut stamp = contact.stamp(element);
-                if step {
-                    (stamp.fe, stamp.fr) = (-work.load(spare), T::Vec2::default());
-                } else if M::Gap::PRESENT {
+                let h = element.h;
+                if M::Gap::PRESENT && !step {
                     west = west.shift(element.gap.kink::<T>());
                 }
                 let absorbed = if i == 0 { left.join(&west, &stamp, h) } else { west.absorb(&stamp, h) };
                 (west, work.factor) = absorbed.ok_or(Halt::Breakdown(i))?;
-                (work.condensed, work.touch) = (west, contact.touch);
+                work.condensed = west;
                 from_left += 1;
             }
             if from_right > meeting {
@@ -802,82 +845,38 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                     east = east.shift(-next.element.gap.kink::<T>());
                 }
                 let (before, Place { element, work }) = at(self.places, i).ok_or(Halt::Breakdown(i))?;
-                let node = before.map_or(self.node, |before| before.work.node);
-                let h = element.h;
-                let (contact, motion) = linearise(model, element, work, &node, current, onto, scale(i))
+                let before = before.map_or(self.node, |before| before.work.node);
+                let stamp = stamp(model, element, work, &before, current, onto, scale(i), step)
                     .map_err(|fault| Halt::Law(i, fault))?;
-                let (ce, cd) = contact.force(&motion, h);
-                let deforming = element.deforming_force(motion.e) + ce;
-                let held = cd - element.fr - Bending::carry_back(h, deforming);
-                if i < last {
-                    let gap = east.force(motion.d) + held;
-                    let gap = beyond(gap, east.rounding(motion.d), held, h);
-                    residual.see(gap, held, -h);
-                    residual.see_force(gap.x(), length);
-                } else {
-                    residual.measure(held, -h);
-                }
-                residual.load = residual.load + contact.size(&motion, cd, h) + element.fr.x().abs();
-                let mut stamp = contact.stamp(element);
-                if step {
-                    (stamp.fe, stamp.fr) = (-work.load(spare), T::Vec2::default());
-                }
+                let h = element.h;
                 let stamp = stamp.mirrored(h);
                 let absorbed =
                     if i == last { right.join(&east, &stamp, -h) } else { east.absorb(&stamp, -h) };
                 (east, work.factor) = absorbed.ok_or(Halt::Breakdown(i))?;
-                (work.condensed, work.touch) = (east, contact.touch);
+                work.condensed = east;
             }
         }
-        if let Some((Some(Place { work: before, .. }), Place { element, work })) = at(self.places, meeting) {
-            // Both parts against each other, at the node where they meet.
-            let d = before.states[current].d;
-            let east = work.condensed.shift(-element.gap.kink::<T>());
-            let gap = before.condensed.force(d) + east.force(d);
-            residual.see(gap, T::Vec2::default(), T::zero());
-            residual.see_force(gap.x(), length);
-        }
         self.fresh = !step && (self.fresh || whole);
-        residual.load = residual.load * length;
-        residual.size = residual.size.max(self.context.quiet);
-        if !whole {
-            residual.size = residual.size.max(self.size);
-        }
-        if residual.is_finite() { Ok(residual) } else { Err(Halt::Breakdown(meeting - 1)) }
+        Ok(())
     }
 
-    /// The residual of the current state by statics: no part of the recursion is used.
-    ///
-    /// The shear at the left end is not taken from the first element, which knows it to N times rounding
-    /// only, but from the moments at both ends of the beam; hence two passes.
+    /// The residual of the current state by statics, on all elements, with u and q of that state.
     fn check(&mut self, scale: T, count: &mut Count) -> Result<Residual<T>, Halt> {
         count.spend(self.places.len())?;
-        if self.two_way() {
-            self.electric();
-        }
-        self.balance(scale, false)
+        self.renew();
+        self.balance(scale)
     }
 
-    /// The residual by statics; with `store`, each element's differences of force and moment go into the
-    /// spare state.
-    fn balance(&mut self, scale: T, store: bool) -> Result<Residual<T>, Halt> {
-        let Some(Place { element, work }) = self.places.first() else { return Ok(Residual::none()) };
-        let shear = element.deforming_force(work.states[self.current].e).x();
-        let (_, rest) = self.statics(scale, shear, false)?;
-        let shear = shear - rest / self.context.model.length();
-        self.statics(scale, shear, store).map(|(residual, _)| residual)
-    }
-
-    /// Moments by deformation against moments by statics from the left end, where the shear is `shear`;
-    /// the residual and the difference at the right end.
+    /// The residual by statics: no part of the recursion is used. Moments by deformation are compared with those
+    /// by statics from the left end; each element keeps what its force and moment are off by.
     #[inline(never)]
-    fn statics(&mut self, scale: T, shear: T, store: bool) -> Result<(Residual<T>, T), Halt> {
+    fn balance(&mut self, scale: T) -> Result<Residual<T>, Halt> {
         let Context { model, ref onto, .. } = *self.context;
         let scale = self.scaling(scale);
         let mut residual = Residual::none();
         let mut rest = T::zero();
         let (mut force, mut moment) = (Sum::<T>::default(), Sum::<T>::default());
-        let (current, spare) = (self.current, 1 - self.current);
+        let current = self.current;
         let mut node = self.node;
         for (i, Place { element, work }) in self.places.iter_mut().enumerate() {
             let h = element.h;
@@ -886,30 +885,35 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             let (ce, cd) = contact.force(&motion, h);
             let held = element.deforming_force(motion.e) + ce;
             if i == 0 {
-                (force, moment) = (Sum::from(-(shear + ce.x())), Sum::from(-held.y()));
+                (force, moment) = (Sum::from(-held.x()), Sum::from(-held.y()));
             }
-            let gap = T::Vec2::of(force.plus(held.x()), moment.plus(held.y()));
-            residual.see(gap, held, h);
-            rest = gap.y() - h * gap.x();
+            work.open = T::Vec2::of(force.plus(held.x()), moment.plus(held.y()));
+            rest = work.open.y() - h * work.open.x();
+            residual.measure(held, h);
             residual.load = residual.load + contact.size(&motion, cd, h) + element.fr.x().abs();
             let carried = cd - element.fr;
             moment.add(-(h * force.value()));
             moment.add(carried.y());
             force.add(carried.x());
-            if store {
-                work.set_load(spare, gap);
-            }
             node = work.node;
         }
-        residual.load = residual.load * model.length();
+        // The first element knows the shear at the left end to N times rounding only, the moments at both ends of
+        // the beam know it better: what it is off by grows to `rest` along the beam.
+        let length = model.length();
+        let slip = rest / length;
+        for Place { element, work } in self.places.iter_mut() {
+            work.open += T::Vec2::of(slip, -(slip * (element.right - element.h)));
+            residual.see(work.open, element.h);
+        }
+        residual.load = residual.load * length;
         residual.size = residual.size.max(self.context.quiet);
-        if residual.is_finite() { Ok((residual, rest)) } else { Err(Halt::Breakdown(0)) }
+        if residual.is_finite() { Ok(residual) } else { Err(Halt::Breakdown(0)) }
     }
 
-    /// Back substitution from the meeting point to both ends: the new state beside the best one, and the
-    /// elements whose matrices it changes. `None` if the parts cannot be joined.
+    /// Back substitution from the meeting point to both ends: the new state beside the best one; by how much it
+    /// changes the elements' moments, which is what the one before was off by. `None` if the parts cannot be joined.
     #[inline(never)]
-    fn substitute(&mut self, step: bool) -> Option<Range<usize>> {
+    fn substitute(&mut self, step: bool) -> Option<Residual<T>> {
         let current = self.current;
         let meeting = self.meeting;
         let (west, east) = self.places.split_at_mut_checked(meeting)?;
@@ -929,17 +933,23 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             }
             None => self.context.right.close(&met)?,
         };
-        // The best state stays where it is; any other may be overwritten.
+        // The best state stays where it is, and the one before a step until something is better.
         let target = match self.best {
-            Some((best, _)) if best == self.current => 1 - self.current,
-            _ => self.current,
+            Some((best, _)) if best != current => current,
+            _ => 1 - current,
         };
         let mut near = d;
-        let mut size = T::zero();
+        let (mut size, mut mismatch, mut sum) = (T::zero(), T::zero(), T::zero());
+        let mut see = |element: &Element<T, M>, before: State<T>, after: State<T>| {
+            let moved = element.moments(element.bending.times(after.e - before.e));
+            (mismatch, sum) = (larger(mismatch, moved), sum + moved);
+            size = larger(size, element.largest_moment(after.e));
+        };
         for Place { element, work } in west.iter_mut().rev() {
             let (e, far) = work.factor.substitute(near, element.h);
-            work.states[target] = work.states[current].then(step, e, near);
-            size = larger(size, element.largest_moment(work.states[target].e));
+            let before = work.states[current];
+            work.states[target] = before.then(step, e, near);
+            see(element, before, work.states[target]);
             near = if M::Gap::PRESENT && !step { far + element.gap.kink::<T>() } else { far };
         }
         let mut near = d;
@@ -950,17 +960,19 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             let (e, far) = work.factor.substitute(near, -element.h);
             // e = -T e^
             let e = -Bending::carry(element.h, e);
-            work.states[target] = work.states[current].then(step, e, far);
-            size = larger(size, element.largest_moment(work.states[target].e));
+            let before = work.states[current];
+            work.states[target] = before.then(step, e, far);
+            see(element, before, work.states[target]);
             near = far;
         }
-        (self.current, self.size) = (target, size);
-        Some(if self.two_way() { 0..self.places.len() } else { self.changed() })
+        self.current = target;
+        let size = size.max(self.context.quiet);
+        Some(Residual { mismatch, size, sum, ..Residual::none() })
     }
 
     /// From the first to the last element whose matrix the current state changes, or whose part in the
-    /// right-hand side.
-    pub(crate) fn changed(&self) -> Range<usize> {
+    /// right-hand side; `rescaled`: or that touches.
+    pub(crate) fn changed(&self, rescaled: bool) -> Range<usize> {
         let mut changed = self.places.len()..0;
         if !M::Law::PRESENT && !M::Mu1::PRESENT {
             return 0..0;
@@ -969,10 +981,13 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         let mut node = &self.node;
         for (i, Place { element, work }) in self.places.iter().enumerate() {
             let State { e, d } = work.states[self.current];
-            let q = || potential(element, work, node, onto);
+            let q = onto.as_ref().map(|ratio| || electric::potential(element, node, &work.node, ratio));
             let eta = Motion::new(element.h, e, d).cubic();
             let touch = Touch::of(model, element, &eta, q);
-            if touch == Touch::Mixed || touch != work.touch {
+            if matches!(touch, Touch::Edge | Touch::Mixed)
+                || touch != work.touch
+                || (rescaled && touch != Touch::Free)
+            {
                 changed = changed.start.min(i)..i + 1;
             }
             node = &work.node;
@@ -991,18 +1006,6 @@ fn at<T: Real, M: Model<T>>(places: &mut [Place<T, M>], i: usize) -> Option<Neig
     Some((before.last(), rest.first_mut()?))
 }
 
-pub(crate) fn potential<T: Real, M: Model<T>>(
-    element: &Element<T, M>,
-    work: &Work<T, M>,
-    left: &Node<T, M>,
-    ratio: &Option<Ratio<T>>,
-) -> Cubic<T> {
-    match ratio {
-        Some(ratio) if M::Mu1::PRESENT => electric::potential(element, left, &work.node, ratio),
-        _ => Cubic::default(),
-    }
-}
-
 /// The contact of an element in one of its states, and that state's motion.
 #[inline(always)]
 fn linearise<T: Real, M: Model<T>>(
@@ -1016,8 +1019,31 @@ fn linearise<T: Real, M: Model<T>>(
 ) -> Result<(Contact<T>, Motion<T>), Fault> {
     let State { e, d } = work.states[state];
     let motion = Motion::new(element.h, e, d);
-    let q = || potential(element, work, left, ratio);
+    let q = ratio.as_ref().map(|ratio| || electric::potential(element, left, &work.node, ratio));
     Contact::at(model, element, &motion, q, scale).map(|contact| (contact, motion))
+}
+
+/// The part of an element in the sweep for the state after one of its states; `step`: in that for an increment, which
+/// is loaded by what the element leaves open.
+#[inline(always)]
+#[allow(clippy::too_many_arguments, reason = "what is known of one element, inlined")]
+fn stamp<T: Real, M: Model<T>>(
+    model: &M,
+    element: &Element<T, M>,
+    work: &mut Work<T, M>,
+    left: &Node<T, M>,
+    state: usize,
+    ratio: &Option<Ratio<T>>,
+    scale: T,
+    step: bool,
+) -> Result<Stamp<T, Bending>, Fault> {
+    let (contact, _) = linearise(model, element, work, left, state, ratio, scale)?;
+    work.touch = contact.touch;
+    let mut stamp = contact.stamp(element);
+    if step {
+        (stamp.fe, stamp.fr) = (-work.open, T::Vec2::default());
+    }
+    Ok(stamp)
 }
 
 /// The larger of two sizes. (A maximum that treats NaN takes three instructions more.)
@@ -1026,21 +1052,26 @@ fn larger<T: Real>(a: T, b: T) -> T {
     if b > a { b } else { a }
 }
 
-/// A difference of forces, less what rounding of its parts may leave of it: on one side `rounding`, on the
-/// other an element's force `held`, in which 1/h times its moment has cancelled.
-#[inline(always)]
-fn beyond<T: Real>(gap: T::Vec2, rounding: T::Vec2, held: T::Vec2, h: T) -> T::Vec2 {
-    let unit = T::of(16.0) * T::epsilon();
-    let moment = held.y().abs() + h * held.x().abs();
-    let rest = |gap: T, noise: T| larger(gap.abs() - unit * noise, T::zero()).copysign(gap);
-    T::Vec2::of(rest(gap.x(), rounding.x() + T::of(6.0) * moment / h), rest(gap.y(), rounding.y() + moment))
-}
-
 /// Increments taken one after the other, each from sweeps of its own.
 const POLISHINGS: usize = 6;
 
-/// Residual of a sweep that may be all rounding: if the next one is not better, statics is asked.
+/// Elements below which the residual shows other rounding than that of sweeps.
+const FEW: f64 = 1000.0;
+
+/// Elements from which on the rounding of sweeps is worth a balance before the first of them.
+const FINE: usize = 4000;
+
+/// A step that may be all rounding: if the next one is not shorter by half, statics is asked.
 const NEAR: f64 = 1e-7;
+
+/// Change of the moments by the first step after which statics is asked whether it was the last ...
+const SHORT: f64 = 1e-4;
+
+/// ... and where no element has an edge of contact in it.
+const LINEAR: f64 = 3e-2;
+
+/// Residual from which the next Newton step leaves its square.
+const QUADRATIC: f64 = 1e-6;
 
 /// Rounds that may fall short of a tenth of the residual before where the potential acts on bending, until the
 /// monolithic method takes over.
@@ -1054,6 +1085,9 @@ const FLOOR_STEPS: usize = 6;
 
 /// Full steps taken without halving the residual before they are cut to descend.
 const FULL_STEPS: usize = 12;
+
+/// Times that no step lowers the energy, each followed by full steps, before that is the end.
+const STUCK: usize = 8;
 
 /// Halvings of one step.
 const HALVINGS: usize = 12;

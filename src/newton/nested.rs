@@ -6,7 +6,7 @@
 //! mesh starts where the coarser one ended, and one to four iterations are left for it. The work is then a
 //! few sweeps over the finest mesh, whatever the stiffness.
 
-use super::{Context, Count, Halt, Level, Outcome, Report, Residual, Settings, Status};
+use super::{Context, Count, Goal, Halt, Level, Outcome, Report, Residual, Settings, Status};
 use crate::element::Element;
 use crate::element::hermite::Motion;
 use crate::law::Compliance;
@@ -25,8 +25,10 @@ const MERGED: usize = 4;
 const COARSEST: usize = 40;
 /// Meshes at most: 4^16 times the coarsest is more than any memory.
 const MOST_LEVELS: usize = 16;
-/// Relative residual at which a coarser mesh, or a stage of the continuation, has done its part.
+/// Step after which a stage of the continuation has done its part ...
 const ROUGH: f64 = 1e-4;
+/// ... and a coarser mesh: what is left to do costs less there.
+const CLOSE: f64 = 1e-4;
 /// Iterations granted to one stage or coarser mesh.
 const STAGE: usize = 15;
 /// Stages of the continuation closer than this factor are not tried.
@@ -35,9 +37,6 @@ const SHORTEST: f64 = 1.2;
 const STRIDE: f64 = 100.0;
 /// Stiffness k L^4 / C with which the continuation starts: contact is a few boundary layers wide.
 const SOFT: f64 = 1e5;
-
-/// A residual of so many units in the last place is good enough not to be polished.
-const POLISHED: f64 = 128.0;
 
 /// A residual of so many times the estimate of its rounding may still be rounding.
 const FLOOR: f64 = 64.0;
@@ -180,9 +179,8 @@ fn quiet<T: Real, M: Model<T>>(model: &M, places: &[Place<T, M>], stop: T) -> T 
     let mut most = T::zero();
     for Place { element, .. } in places {
         let gap = model.foundation().gap.value(element.right, element.x(T::of(0.5)));
-        let stiffness = element.bending.yy * element.h * T::of(0.25);
         let bent = element.bending.times(element.gap.bend::<T>()).y().abs();
-        most = most.max(bent).max(gap.abs() * (stiffness / length / length));
+        most = most.max(bent).max(gap.abs() * (element.stiffness() / length / length));
     }
     T::of(64.0) * T::epsilon() / stop * most
 }
@@ -333,14 +331,11 @@ fn descend<T: Real, M: Model<T>>(
         }
         // A halt on a coarser mesh is one on all: what it found is only carried on.
         if outcome.is_ok() {
-            let stop = if rank == 0 { settings.stop } else { T::of(ROUGH) };
-            outcome = if coarsest {
-                level.begin(stop, rank == 0, count)
-            } else {
-                level.proceed(stop, rank == 0, count)
-            };
+            let finest = rank == 0;
+            let goal = Goal { stop: if finest { settings.stop } else { T::of(CLOSE) }, finest };
+            outcome = if coarsest { level.begin(goal, count) } else { level.proceed(goal, count) };
             if rank == 0 && outcome == Ok(Outcome::Converged) {
-                outcome = level.refine(POLISHED, count).map(|()| Outcome::Converged);
+                outcome = level.refine(level.polished(), count).map(|()| Outcome::Converged);
             }
         }
         if rank == 0 {
@@ -356,7 +351,7 @@ fn descend<T: Real, M: Model<T>>(
 pub(crate) fn sharpen<T: Real, M: Model<T>>(
     model: &M,
     places: &mut [Place<T, M>],
-    units: f64,
+    units: T,
     settings: &Settings<T>,
 ) -> Answer<T, M> {
     let mut count = budget(settings, places.len());
@@ -365,9 +360,10 @@ pub(crate) fn sharpen<T: Real, M: Model<T>>(
     if context.onto.is_some() && !context.into {
         level.electric();
     }
-    let mut outcome = level.join_in(settings.stop, &mut count);
+    let goal = Goal { stop: settings.stop, finest: true };
+    let mut outcome = level.join_in(goal, &mut count);
     if outcome == Ok(Outcome::Stalled) {
-        outcome = level.proceed(settings.stop, true, &mut count);
+        outcome = level.proceed(goal, &mut count);
     }
     if outcome == Ok(Outcome::Converged) {
         outcome = level.refine(units, &mut count).map(|()| Outcome::Converged);
@@ -442,103 +438,133 @@ pub(crate) fn follow<T: Real, M: Model<T>>(
     if context.onto.is_some() {
         level.electric();
     }
+    let mut outcome = Ok(Outcome::Stalled);
     if bounds(model) != last.bounds {
         changed = 0..elements;
+    } else if changed.is_empty() {
+        // The old solution may be the new one.
+        outcome = level.holds(settings.stop, &mut count);
+        changed = level.changed(false);
     } else {
-        let touched = level.changed();
+        let touched = level.changed(false);
         if !touched.is_empty() {
             changed = changed.start.min(touched.start)..changed.end.max(touched.end);
         }
     }
     // Not refined: a step for an increment would leave the condensed parts to be made anew.
-    let outcome = level.iterate_from(changed, T::one(), settings.stop, 4 * STAGE, &mut count);
+    let goal = Goal { stop: settings.stop, finest: true };
+    if outcome == Ok(Outcome::Stalled) {
+        outcome = level.iterate_from(changed, T::one(), goal, 4 * STAGE, &mut count);
+    }
     Some(level.answer(outcome, settings.stop, &count))
+}
+
+impl<T: Real> Goal<T> {
+    /// To have a start for a finer mesh, or the next stage of a continuation.
+    fn start() -> Self {
+        Self { stop: T::of(ROUGH), finest: false }
+    }
 }
 
 impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
     /// From nothing.
-    fn begin(&mut self, stop: T, finest: bool, count: &mut Count) -> Result<Outcome, Halt> {
+    fn begin(&mut self, goal: Goal<T>, count: &mut Count) -> Result<Outcome, Halt> {
         // What the type rules out is not compiled: the coupled method is half of the code.
         if !M::Mu1::PRESENT || self.context.onto.is_none() {
-            return self.cold(stop, finest, count);
+            return self.cold(goal, count);
         }
         // Without the potential's action the state is the least of a convex energy: the start for the rest.
         let Context { model, left, right, into, quiet, .. } = *self.context;
         let alone = Context { model, left, right, onto: None, into, quiet };
         let mut level = Level::new(&alone, self.places);
         level.current = self.current;
-        level.cold(T::of(ROUGH), false, count)?;
-        self.current = level.current;
-        let most = if finest { 4 * STAGE } else { STAGE };
-        let outcome = self.iterate(T::one(), stop, most, count)?;
+        level.cold(Goal::start(), count)?;
+        (self.current, self.meeting, self.fresh) = (level.current, level.meeting, level.fresh);
+        let most = if goal.finest { 4 * STAGE } else { STAGE };
+        let outcome = self.iterate(T::one(), goal, most, count)?;
         if outcome == Outcome::Stalled && self.convex() {
-            return self.climb_from(stop, finest, count);
+            return self.climb_from(goal, count);
         }
         Ok(outcome)
     }
 
     /// From near the solution, where bending and potential hold each other: the monolithic method alone.
-    fn join_in(&mut self, stop: T, count: &mut Count) -> Result<Outcome, Halt> {
+    fn join_in(&mut self, goal: Goal<T>, count: &mut Count) -> Result<Outcome, Halt> {
         if !self.two_way() {
             return Ok(Outcome::Stalled);
         }
         self.electric();
-        if self.convex() { Ok(Outcome::Stalled) } else { self.descend_coupled(T::one(), stop, STAGE, count) }
+        if self.convex() {
+            Ok(Outcome::Stalled)
+        } else {
+            self.descend_coupled(T::one(), goal.stop, STAGE, count)
+        }
     }
 
     /// From where a coarser mesh ended.
-    fn proceed(&mut self, stop: T, finest: bool, count: &mut Count) -> Result<Outcome, Halt> {
-        let outcome = self.iterate(T::one(), stop, STAGE, count)?;
+    fn proceed(&mut self, goal: Goal<T>, count: &mut Count) -> Result<Outcome, Halt> {
+        let mut outcome = Outcome::Stalled;
+        if goal.finest && self.is_fine() {
+            outcome = self.advance(goal.stop, count)?;
+        }
+        if outcome == Outcome::Stalled {
+            outcome = self.iterate(T::one(), goal, STAGE, count)?;
+        }
         if outcome != Outcome::Stalled {
             Ok(outcome)
         } else if self.convex() {
             // The contact's edges are known to a few elements: soften until its layers are as wide.
-            self.climb_from(stop, finest, count)
-        } else if finest {
+            self.climb_from(goal, count)
+        } else if goal.finest {
             // The coarser meshes misled: start anew on this one.
             for place in self.places.iter_mut() {
                 place.work.states = States::default();
             }
-            self.begin(stop, true, count)
+            self.begin(goal, count)
         } else {
             Ok(outcome)
         }
     }
 
     /// From nothing, for bending alone: the free beam, then a continuation in the stiffness as far as it is needed.
-    fn cold(&mut self, stop: T, finest: bool, count: &mut Count) -> Result<Outcome, Halt> {
-        let changed = self.free(count)?;
+    fn cold(&mut self, goal: Goal<T>, count: &mut Count) -> Result<Outcome, Halt> {
+        self.free(count)?;
         if !M::Law::PRESENT {
-            return self.iterate_from(changed, T::one(), stop, STAGE, count);
+            return self.iterate(T::one(), goal, STAGE, count);
         }
         let soft = T::of(SOFT) * self.bending() / self.context.model.length().powi(4);
         let stiffness = self.stiffness();
         if !M::Law::LINEAR && soft / stiffness <= T::epsilon() * T::epsilon() {
             // The law is all but infinite under the free beam: from the straight one, steps that are cut.
             self.straighten();
-            self.lower(T::of(ROUGH), T::one(), stop, count)?;
-            return self.iterate(T::one(), stop, usize::MAX, count);
+            self.lower(T::of(ROUGH), T::one(), goal.stop, count)?;
+            return self.iterate(T::one(), goal, usize::MAX, count);
         }
         // A stiffness beyond all bounds makes the first scale zero.
-        self.climb((soft / stiffness).max(T::min_positive_value()), stiffness, true, stop, finest, count)
+        self.climb((soft / stiffness).max(T::min_positive_value()), stiffness, true, goal, count)
     }
 
     /// From where a coarser mesh ended, and full steps did not help: a continuation that starts with layers
     /// as wide as that mesh's elements.
-    fn climb_from(&mut self, stop: T, finest: bool, count: &mut Count) -> Result<Outcome, Halt> {
+    fn climb_from(&mut self, goal: Goal<T>, count: &mut Count) -> Result<Outcome, Halt> {
         let stiffness = self.stiffness();
         let widest = self.places.iter().fold(T::zero(), |m, p| m.max(p.element.h)) * T::of(MERGED as f64);
         let scale = T::of(4.0) * self.bending() / stiffness / widest.powi(4);
         if M::Mu1::PRESENT && scale >= T::one() && self.context.onto.is_some() {
             // Not the contact's layers: the potential's action is what does not settle.
-            return self.descend_coupled(T::one(), stop, if finest { 4 * STAGE } else { STAGE }, count);
+            return self.descend_coupled(
+                T::one(),
+                goal.stop,
+                if goal.finest { 4 * STAGE } else { STAGE },
+                count,
+            );
         }
-        self.climb(scale.max(T::min_positive_value()), stiffness, false, stop, finest, count)
+        self.climb(scale.max(T::min_positive_value()), stiffness, false, goal, count)
     }
 
     /// The largest bending stiffness \[N m^2\].
     fn bending(&self) -> T {
-        self.places.iter().fold(T::zero(), |m, p| m.max(p.element.bending.yy * p.element.h * T::of(0.25)))
+        self.places.iter().fold(T::zero(), |m, p| m.max(p.element.stiffness()))
     }
 
     /// The continuation in the stiffness, which is `stiffness` at most, from `scale` times it.
@@ -547,11 +573,9 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
         mut scale: T,
         stiffness: T,
         cold: bool,
-        stop: T,
-        finest: bool,
+        goal: Goal<T>,
         count: &mut Count,
     ) -> Result<Outcome, Halt> {
-        let rough = T::of(ROUGH);
         if scale < T::one() {
             let n = self.places.len();
             let length = self.context.model.length();
@@ -570,7 +594,7 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
                     .max(self.scaled.start);
             }
             if cold && self.scaled != (0..n) {
-                self.iterate(T::zero(), rough, 4 * STAGE, count)?;
+                self.iterate(T::zero(), Goal::start(), 4 * STAGE, count)?;
             }
         }
         // A convex stage that stalls ends by itself.
@@ -578,7 +602,7 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
         let mut stride = T::of(STRIDE);
         let mut reached = T::zero();
         while scale < T::one() {
-            if self.iterate(scale, rough, stage, count)? == Outcome::Stalled {
+            if self.iterate(scale, Goal::start(), stage, count)? == Outcome::Stalled {
                 // Too far: half the way in the exponent, from where the failed stage ended.
                 if stride <= T::of(SHORTEST) || reached == T::zero() {
                     break;
@@ -590,12 +614,12 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
             }
             scale = reached * stride;
         }
-        let most = match (finest, self.convex()) {
+        let most = match (goal.finest, self.convex()) {
             (true, true) => usize::MAX,
             (true, false) => 4 * STAGE,
             _ => STAGE,
         };
-        self.iterate(T::one(), stop, most, count)
+        self.iterate(T::one(), goal, most, count)
     }
 
     /// The beam without any deflection.

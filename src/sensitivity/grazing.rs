@@ -65,8 +65,7 @@ fn offset<T: Real, M: Model<T>>(solved: &Solved<'_, T, M>, kink: Kink, depth: T)
         let [c0, c1, c2, c3] = field.0;
         Cubic([c0 - level, c1, c2, c3])
     };
-    let onto = M::Mu1::PRESENT && element.mu1.constant() != Some(zero);
-    let into = M::Mu2::PRESENT && element.mu2.constant() != Some(zero);
+    let (onto, into) = (element.conducts_onto(), element.conducts_into());
     let bounds = solved.scene.conduction();
     let pressed = || [0.0, 0.5, 1.0].iter().any(|&t| solved.eta.at(T::of(t)) > zero);
     match kink {

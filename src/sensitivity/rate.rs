@@ -8,12 +8,12 @@
 
 use super::{Output, Parameter};
 use crate::cubic::Cubic;
-use crate::element::contact::parts;
+use crate::element::contact::points;
 use crate::element::hermite::{self, Motion, work};
 use crate::element::linear::Inverse;
 use crate::law::{Compliance, truncate, truncate_positive};
 use crate::profile::{Piece, Profile, Slot, Smooth};
-use crate::quadrature::{POINTS, gauss, integrate};
+use crate::quadrature::{POINTS, add_moments, gauss, integrate};
 use crate::real::{Pair, Real};
 use crate::scene::Model;
 use crate::solution::{Fields, Solved};
@@ -408,15 +408,15 @@ impl<'a, 's, T: Real, M: Model<T>> Rate<'a, 's, T, M> {
             let axial = element.axial.get();
             source = Source { load: axial.total, u: -axial.stretch, q: axial.charge, ..source };
         }
-        if conducts_into(element) {
+        if element.conducts_into() {
             // The same points and weights as those of `charging`, of which this is the transposed.
-            quadrature(solved, |t, weight| {
+            for (t, weight) in points(&mut solved.splits.clone()) {
                 let part = h * weight * self.current(t);
                 let (stretch, charge) = element.flexibility.integral(t);
                 source.current = source.current + part;
                 source.u = source.u - h * part * stretch;
                 source.q = source.q - h * part * charge;
-            });
+            }
         }
         if self.softens() {
             let softening = |t: T| {
@@ -458,32 +458,13 @@ impl<'a, 's, T: Real, M: Model<T>> Rate<'a, 's, T, M> {
     }
 }
 
-/// Shows the points over t, and their weights, of a quadrature between the kinks of the forces.
-fn quadrature<T: Real, M: Model<T>>(solved: &Solved<'_, T, M>, mut see: impl FnMut(T, T)) {
-    let mut splits = solved.splits.clone();
-    for (from, to) in parts(&mut splits) {
-        for (z, weight) in gauss::<POINTS>() {
-            see(from + (to - from) * T::of(z), T::of(weight) * (to - from));
-        }
-    }
-}
-
 /// Moments over t, in the powers 0 to 3, of a force per length.
 fn moments<T: Real, M: Model<T>>(solved: &Solved<'_, T, M>, mut force: impl FnMut(T) -> T) -> [T; 4] {
     let mut moments = [T::zero(); 4];
-    quadrature(solved, |t, weight| {
-        let mut part = weight * force(t);
-        for moment in &mut moments {
-            *moment = *moment + part;
-            part = part * t;
-        }
-    });
+    for (t, weight) in points(&mut solved.splits.clone()) {
+        add_moments(&mut moments, t, weight * force(t));
+    }
     moments
-}
-
-/// Does mu2 act in the element?
-fn conducts_into<T: Real, M: Model<T>>(element: &crate::element::Element<T, M>) -> bool {
-    M::Mu2::PRESENT && element.mu2.constant() != Some(T::zero())
 }
 
 /// Work of a unit force at t on (e, d).
@@ -502,7 +483,7 @@ pub(super) fn conduction<T: Real, M: Model<T>>(
 ) -> (Flow<T>, Flow<T>) {
     let (zero, one, element) = (T::zero(), T::one(), solved.element);
     let (mut left, mut right) = (Flow::default(), Flow::default());
-    if !M::Mu1::PRESENT || element.mu1.constant() == Some(zero) {
+    if !element.conducts_onto() {
         return (left, right);
     }
     let bounds = solved.scene.conduction();
@@ -514,14 +495,14 @@ pub(super) fn conduction<T: Real, M: Model<T>>(
         Cubic::hermite(zero, zero, zero, one),
     ];
     let mut weights = [zero; 4];
-    quadrature(solved, |t, weight| {
+    for (t, weight) in points(&mut solved.splits.clone()) {
         let depth = truncate_positive(solved.eta.at(t), bounds.truncation).0;
         let slope = truncate(solved.q.at(t), bounds.potential_truncation).1;
         let part = element.h * weight * element.mu1.at(t) * slope * depth;
         for (weight, shape) in weights.iter_mut().zip(&shapes) {
             *weight = *weight - part * lambda.at(t) * shape.at(t);
         }
-    });
+    }
     let slope = |t: T, weight: T| {
         let k = element.flexibility.at(t);
         let by = |tau, charge| -(element.h * weight * solved.ratio.gradients::<M>(&k, tau, charge).1);
@@ -540,7 +521,7 @@ pub(super) fn charging<T: Real, M: Model<T>>(
     [m_u, m_q, r]: [T; 3],
 ) -> (T::Vec2, T::Vec2) {
     let (h, element) = (solved.element.h, solved.element);
-    if !conducts_into(element) {
+    if !element.conducts_into() {
         return (T::Vec2::default(), T::Vec2::default());
     }
     let bound = solved.scene.conduction().truncation;

@@ -89,8 +89,6 @@ pub(crate) trait Block<T: Real>: Copy {
     fn matrix_carry(m: &Self::Matrix, h: T) -> Self::Matrix;
     /// S v
     fn energy_times(s: &Self::Energy, v: Self::Vector) -> Self::Vector;
-    /// |S||v| + |b|, component by component
-    fn sizes(s: &Self::Energy, v: Self::Vector, b: Self::Vector) -> Self::Vector;
     /// M v
     fn times(m: &Self::Matrix, v: Self::Vector) -> Self::Vector;
     /// -M
@@ -126,6 +124,8 @@ pub(crate) struct Stamp<T: Real, B: Block<T>> {
     pub(crate) rr: B::Energy,
     pub(crate) fe: B::Vector,
     pub(crate) fr: B::Vector,
+    /// A_er, A_re and A_rr are zero: nothing but bending.
+    pub(crate) free: bool,
 }
 
 /// All that lies to the left of a node: 1/2 d'S d - b'd.
@@ -193,6 +193,10 @@ impl<T: Real, B: Block<T>> Stamp<T, B> {
     #[inline(always)]
     pub(crate) fn mirrored(&self, h: T) -> Self {
         // e = -T e^ and d_right = T^-1 d_left + e^, put into the energy.
+        let (fe, fr) = (self.fr - B::carry_back(h, self.fe), B::carry_back(-h, self.fr));
+        if self.free {
+            return Self { ee: B::congruence(&self.ee, h), fe, fr, ..*self };
+        }
         let cross = B::of_energy(&self.rr) + B::negate(&B::carry_matrix(h, &self.er));
         let cross_low = B::of_energy(&self.rr) + B::negate(&B::matrix_carry(&B::lower(self), h));
         Self {
@@ -200,8 +204,9 @@ impl<T: Real, B: Block<T>> Stamp<T, B> {
             er: B::matrix_carry(&cross, -h),
             re: B::carry_matrix(-h, &cross_low),
             rr: B::congruence(&self.rr, -h),
-            fe: self.fr - B::carry_back(h, self.fe),
-            fr: B::carry_back(-h, self.fr),
+            fe,
+            fr,
+            free: false,
         }
     }
 }
@@ -231,11 +236,16 @@ impl<T: Real, B: Block<T>> Condensed<T, B> {
             let (gain, constant) = B::divide(&a, &upper, load)?;
             return Some(Self::from_nodal(element, h, gain, constant));
         }
-        let st = B::carry_right(&self.s, h);
-        let right = st + element.er;
-        let left = B::carry_left(&self.s, h, &st) + B::lower(element);
+        let mut right = B::carry_right(&self.s, h);
+        let mut left = B::carry_left(&self.s, h, &right);
+        let mut whole = B::congruence(&self.s, h);
+        if !element.free {
+            right = right + element.er;
+            left = left + B::lower(element);
+            whole = whole + element.rr;
+        }
         let (gain, constant) = B::divide(&a, &right, load)?;
-        let s = B::reduce(&(B::congruence(&self.s, h) + element.rr), &left, &gain);
+        let s = B::reduce(&whole, &left, &gain);
         let b = B::carry_back(h, self.b) + element.fr - B::times(&left, constant);
         Some((Self { s, b }, Factor { gain, constant, nodal: false }))
     }
@@ -253,18 +263,6 @@ impl<T: Real, B: Block<T>> Condensed<T, B> {
     #[inline(always)]
     pub(crate) fn shift(&self, jump: B::Vector) -> Self {
         Self { s: self.s, b: self.b - B::energy_times(&self.s, jump) }
-    }
-
-    /// Force of the left part on the node at d: its energy's gradient.
-    #[inline(always)]
-    pub(crate) fn force(&self, d: B::Vector) -> B::Vector {
-        B::energy_times(&self.s, d) - self.b
-    }
-
-    /// Sizes of what cancels in [`Condensed::force`].
-    #[inline(always)]
-    pub(crate) fn rounding(&self, d: B::Vector) -> B::Vector {
-        B::sizes(&self.s, d, self.b)
     }
 
     #[inline]

@@ -488,6 +488,7 @@ impl Recipe {
             rr: B::energy(|i, j| a[n + i][n + j]),
             fe: B::vector(|i| h * units[i] * load[i]),
             fr: B::vector(|i| h * units[i] * load[n + i]),
+            free: false,
         };
         let jump = if self.jumps {
             B::vector(|i| 0.1 * B::units(1.0)[i] * load[2 * n + i])
@@ -636,6 +637,7 @@ fn the_oracle_knows_a_cantilever() {
         rr: Symmetric::default(),
         fe: DVec2::ZERO,
         fr: DVec2::new(force, 0.0),
+        free: false,
     };
     let random = [0.0; 64];
     let (left, right) = (end(Hold::Clamped, &random), end(Hold::Free, &random[32..]));
@@ -735,6 +737,7 @@ proptest! {
                 rr: energy(&stamp.rr, 0.0),
                 fe: vector(stamp.fe),
                 fr: vector(stamp.fr),
+                free: false,
             };
             Link { h, stamp, jump: vector(jump) }
         });
@@ -791,6 +794,7 @@ fn errors_in_the_middle(n: usize) -> (f64, f64) {
         rr: Symmetric::default(),
         fe: f1,
         fr: DVec2::new(f * h, -f * h * h / 2.0),
+        free: false,
     };
     let link = Link { h, stamp, jump: DVec2::ZERO };
     let random = [0.0; 64];
@@ -820,6 +824,7 @@ fn a_leap_is_seen_in_deflections_too() {
             rr: Symmetric::default(),
             fe: DVec2::new(h / 2.0, h * h / 12.0),
             fr: DVec2::new(h, -h * h / 2.0),
+            free: false,
         };
         Link { h, stamp, jump: DVec2::ZERO }
     };

@@ -161,12 +161,6 @@ impl<T: Real> Block<T> for Coupled {
         *s * v
     }
 
-    fn sizes(s: &T::Mat4, v: T::Vec4, b: T::Vec4) -> T::Vec4 {
-        let abs = s.columns().map(|c| c.map(T::abs));
-        let sum = T::Mat4::of(abs) * T::Vec4::of(v.array().map(T::abs));
-        sum + T::Vec4::of(b.array().map(T::abs))
-    }
-
     fn times(m: &T::Mat4, v: T::Vec4) -> T::Vec4 {
         *m * v
     }
