@@ -96,6 +96,8 @@ pub(crate) struct Solved<'s, T: Real, M: Model<T>> {
     rigid: bool,
     /// Nowhere in contact, but for rounding.
     free: bool,
+    /// Its contact force is rounding of its load: so where at a clamp without a gap rounding puts a crossing.
+    light: bool,
     pub(crate) ratio: Ratio<T>,
     /// Force and moment at the left node: shear and minus the moment.
     pub(crate) held: T::Vec2,
@@ -288,7 +290,7 @@ impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
         let splits = kinks(self.scene, &eta, (M::Mu1::PRESENT || M::Mu2::PRESENT).then_some(&q));
         let mid = element.x(T::of(0.5));
         let right = &work.node;
-        let (held, rigid) = (T::Vec2::default(), self.rigid);
+        let (held, rigid, light) = (T::Vec2::default(), self.rigid, false);
         let free = eta.side(T::zero()) == Side::Below;
         let mut solved = Solved {
             scene: self.scene,
@@ -301,6 +303,7 @@ impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
             mid,
             rigid,
             free,
+            light,
             ratio,
             held,
             splits,
@@ -310,8 +313,7 @@ impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
         let (force, whole) = solved
             .contact()
             .map_or_else(|_| (T::Vec2::default(), T::Vec2::default()), |c| c.force(&motion, element.h));
-        // At a clamp without a gap rounding may put a crossing beside it.
-        solved.free = solved.free || whole.x().abs() <= T::of(64.0) * T::epsilon() * element.fr.x().abs();
+        solved.light = whole.x().abs() <= T::of(64.0) * T::epsilon() * element.fr.x().abs();
         solved.held = element.bending.times(solved.bend()) + force - element.fe;
         solved
     }
@@ -459,8 +461,9 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
         // In contact the cubic; else as much of the bubble 16 t^2 (1 - t)^2 added, if it leads towards the
         // foundation, as there is room for.
         let added = self.net(T::of(0.5)) / (T::of(384.0) * soft);
-        if !self.free || added <= T::zero() {
-            return if self.free { T::one() } else { T::zero() };
+        let lifted = self.free || self.light;
+        if !lifted || added <= T::zero() {
+            return if lifted { T::one() } else { T::zero() };
         }
         [0.125, 0.25, 0.5, 0.75, 0.875].into_iter().fold(T::one(), |trust, t| {
             let bubble = added * T::of(16.0 * t * t * (1.0 - t) * (1.0 - t));

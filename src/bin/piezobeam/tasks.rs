@@ -68,10 +68,12 @@ impl Solve {
         tolerance: f64,
         settings: &Settings<T>,
     ) -> Result<(Solved, Vec<T>), Error> {
-        let mut asked = tolerance;
+        let (mut asked, mut visits) = (tolerance, 0);
         loop {
             let found = problem.solve_to(memory, T::of(asked), settings)?;
             let mut solved = self.solved(&found.solution, settings)?;
+            visits += solved.report.element_visits;
+            solved.report.element_visits = visits;
             // The certificate knows the error better than the meshes do.
             let missed = found.reached == Reached::Tolerance
                 && solved.report.error_estimate.is_some_and(|error| error > tolerance);
