@@ -13,9 +13,7 @@
 //!     u' = uu tau + z D,   q' = (qq + r uq) D - uq tau,   z = uq - r uu
 //! ```
 //!
-//! z is exactly zero where the ratio is the same, and nothing cancels. Where P^2 > EA eps it is the other way round: what
-//! stretches the beam polarises it so much that D and P u' cancel in q' by the factor P^2 / (EA eps), and r D in sigma.
-//! There r = 0 is taken, and the end values are solved for by the larger pivot.
+//! z is exactly zero where the ratio is the same, and nothing cancels.
 
 use crate::cubic::Cubic;
 use crate::element::Element;
@@ -31,7 +29,7 @@ pub(crate) const fn present<T: Real, M: Model<T>>() -> bool {
     M::Axial::PRESENT || M::Permittivity::PRESENT
 }
 
-/// The ratio r of a beam: P / eps of one element, or zero where that is large.
+/// The ratio r of a beam: P / eps of one element.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ratio<T> {
     uu: T,
@@ -43,9 +41,7 @@ pub(crate) struct Ratio<T> {
 
 impl<T: Real> Ratio<T> {
     pub(crate) fn of<M: Model<T>>(first: &Element<T, M>) -> Self {
-        let Inverse { uu, uq, qq } = first.flexibility.mean();
-        let small = uq.abs() * (uq / uu).abs() <= qq;
-        let uq = if small { uq } else { T::zero() };
+        let Inverse { uu, uq, .. } = first.flexibility.mean();
         let r = if M::Piezo::PRESENT { uq / uu } else { T::zero() };
         Self { uu, uq, r, axial: T::one() / uu }
     }
@@ -64,7 +60,7 @@ impl<T: Real> Ratio<T> {
     /// z = uq - r uu, exactly zero for the ratio's own element.
     #[inline(always)]
     fn excess(&self, k: &Inverse<T>) -> T {
-        if self.uq == T::zero() { k.uq } else { (k.uq * self.uu - k.uu * self.uq) * self.axial }
+        (k.uq * self.uu - k.uu * self.uq) * self.axial
     }
 
     /// u' and q' from tau and D.
@@ -158,16 +154,9 @@ pub(crate) fn solve<T: Real, M: Model<T>, const EXACT: bool>(
     let Reach { uu, z, uq, qq } = reach;
     let (tau, displacement) = match (M::Axial::PRESENT, M::Permittivity::PRESENT) {
         (true, true) => {
-            let (uu, z, uq, qq) = (uu.value(), z.value(), uq.value(), qq.value());
-            if uq.abs() * (z / uu).abs() <= qq.abs() {
-                let share = uq / uu;
-                let displacement = (drop + share * lack) / (qq + share * z);
-                ((lack - z * displacement) / uu, displacement)
-            } else {
-                let share = uu / uq;
-                let displacement = (lack + share * drop) / (z + share * qq);
-                ((qq * displacement - drop) / uq, displacement)
-            }
+            let share = uq.value() / uu.value();
+            let displacement = (drop + share * lack) / (qq.value() + share * z.value());
+            ((lack - z.value() * displacement) / uu.value(), displacement)
         }
         (true, false) => (lack / uu.value(), T::zero()),
         _ => (T::zero(), drop / qq.value()),

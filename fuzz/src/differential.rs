@@ -91,8 +91,14 @@ pub fn differential(data: &[u8]) {
         }
     };
     if other.0 == Status::Converged {
+        // Without a load there is the gap's rounding.
+        let digits = if what == "single" { f64::from(f32::EPSILON) } else { f64::EPSILON };
+        let rounding = 256.0 * digits * double.gap.abs();
         for (a, b) in bending.iter().zip(&other.1) {
-            assert!((a - b).abs() <= allowed * size, "{what}: {a:e} and {b:e} of {size:e}: {input:?}");
+            assert!(
+                (a - b).abs() <= allowed * size + rounding,
+                "{what}: {a:e} and {b:e} of {size:e}: {input:?}"
+            );
         }
     }
 }

@@ -168,7 +168,14 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
                 (false, false) => [0.0; 4],
             };
             let flux = [(ea * du).abs() + (p * dq).abs(), (p * du).abs() + eps * dq.abs()];
-            Strains { du, dq, size_u, size_q, flux }
+            if !(M::Axial::PRESENT && M::Permittivity::PRESENT) {
+                return Strains { du, dq, size_u, size_q, flux };
+            }
+            // The solver carries sigma + r D, r = P / eps, and takes it apart again: a documented limit where r is large.
+            let ratio = (p / eps).abs();
+            let apart = ratio * charge.abs();
+            let size_q = size_q.max((charge.abs() + (p * du).abs()) / eps + ratio * size_u);
+            Strains { du, dq, size_u: size_u.max(apart / ea), size_q, flux: [flux[0] + apart, flux[1]] }
         };
         let [fa, fb] = [at(a), at(b)];
         let eta = |x: f64, f: &piezobeam::Fields<T>| {
