@@ -23,7 +23,7 @@ Examples:
   piezobeam extremes --quick                      does it hold at the edges of what can be asked?
 
 Exit status:
-  0  the solve converged (sweep: all did; check, paper, time, extremes: all went well)
+  0  the solve converged (sweep: all did; check, paper, time, extremes, report: all went well)
   1  the solve did not converge, or not to the --tolerance; the best iterate is still reported, marked as such
   2  bad input: the command line, the scene file, or an output that cannot be written";
 
