@@ -5,6 +5,7 @@ use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::newton::nested::{self, Last};
 use crate::newton::{Settings, Status};
+use crate::problem::room;
 use crate::real::Real;
 use crate::scene::{self, Model};
 use crate::solution::Solution;
@@ -76,11 +77,7 @@ impl<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized> History<'s, T, M, S> {
         settings.validate()?;
         scene::validate(scene)?;
         self.mesh.validate(scene.length())?;
-        let elements = self.mesh.count(scene)?;
-        let places = self.memory.places(elements);
-        if elements > places.len() {
-            return Err(Error::Capacity { needed: elements, available: places.len() });
-        }
+        let (elements, places) = room(&self.mesh, scene, self.memory)?;
         let last = last.filter(|(before, _)| *before == elements).map(|(_, last)| last);
         let changed = lay(&self.mesh, scene, &mut places[..elements], last.is_some())?;
         let mut wasted = 0;

@@ -68,12 +68,7 @@ impl<'a, T: Real, M: Model<T>> Problem<'a, T, M> {
         &'s self,
         memory: &'s mut S,
     ) -> Result<Prepared<'s, T, M>, Error> {
-        // Count first, so that memory that grows does so once.
-        let elements = self.mesh.count(&self.scene)?;
-        let places = memory.places(elements);
-        if elements > places.len() {
-            return Err(Error::Capacity { needed: elements, available: places.len() });
-        }
+        let (elements, places) = room(&self.mesh, &self.scene, memory)?;
         let mut free = places.iter_mut();
         self.mesh.lay(&self.scene, |left, right, stop| {
             if let Some(place) = free.next() {
@@ -98,6 +93,22 @@ impl<'a, T: Real, M: Model<T>> Problem<'a, T, M> {
     ) -> Result<Solution<'s, T, M>, Error> {
         self.prepare(memory)?.into_solution(settings)
     }
+}
+
+/// A number of elements, and room for them.
+type Room<'m, T, M> = (usize, &'m mut [Place<T, M>]);
+
+/// The elements of a mesh, and room for them and the coarser meshes.
+pub(crate) fn room<'m, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
+    mesh: &Mesh<'_, T>,
+    scene: &M,
+    memory: &'m mut S,
+) -> Result<Room<'m, T, M>, Error> {
+    // Count first, so that memory that grows does so once.
+    let needed = mesh.count(scene)?;
+    let places = memory.places(needed);
+    let available = places.len();
+    if needed > available { Err(Error::Capacity { needed, available }) } else { Ok((needed, places)) }
 }
 
 /// A scene laid into memory, ready to be solved, again and again.
