@@ -5,6 +5,7 @@ use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::newton::nested::{self, Last};
 use crate::newton::{Settings, Status};
+use crate::problem::room;
 use crate::real::Real;
 use crate::scene::{self, Model};
 use crate::solution::Solution;
@@ -76,12 +77,8 @@ impl<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized> History<'s, T, M, S> {
         settings.validate()?;
         scene::validate(scene)?;
         self.mesh.validate(scene.length())?;
-        let elements = self.mesh.count(scene)?;
-        let places = self.memory.places(elements);
-        let available = places.len();
-        let Some(mesh) = places.get_mut(..elements) else {
-            return Err(Error::Capacity { needed: elements, available });
-        };
+        let (elements, places) = room(&self.mesh, scene, self.memory)?;
+        let mesh = places.get_mut(..elements).unwrap_or_default();
         let last = last.filter(|(before, _)| *before == elements).map(|(_, last)| last);
         let changed = lay(&self.mesh, scene, mesh, last.is_some())?;
         let mut wasted = 0;

@@ -101,12 +101,7 @@ pub(crate) fn lay<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
     mesh: &Mesh<'_, T>,
     memory: &'s mut S,
 ) -> Result<(&'s mut [Place<T, M>], Levels), Error> {
-    // Count first, so that memory that grows does so once.
-    let elements = mesh.count(scene)?;
-    let places = memory.places(elements);
-    if elements > places.len() {
-        return Err(Error::Capacity { needed: elements, available: places.len() });
-    }
+    let (elements, places) = room(mesh, scene, memory)?;
     let mut free = places.iter_mut();
     mesh.lay(scene, |left, right, stop| {
         if let Some(place) = free.next() {
@@ -117,6 +112,22 @@ pub(crate) fn lay<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
     })?;
     let levels = nested::coarsen(scene, places, elements);
     Ok((places, levels))
+}
+
+/// A number of elements, and room for them.
+type Room<'m, T, M> = (usize, &'m mut [Place<T, M>]);
+
+/// The elements of a mesh, and room for them and the coarser meshes.
+pub(crate) fn room<'m, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
+    mesh: &Mesh<'_, T>,
+    scene: &M,
+    memory: &'m mut S,
+) -> Result<Room<'m, T, M>, Error> {
+    // Count first, so that memory that grows does so once.
+    let needed = mesh.count(scene)?;
+    let places = memory.places(needed);
+    let available = places.len();
+    if needed > available { Err(Error::Capacity { needed, available }) } else { Ok((needed, places)) }
 }
 
 /// A scene laid into memory, ready to be solved, again and again.

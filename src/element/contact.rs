@@ -559,6 +559,18 @@ mod tests {
         })
     }
 
+    /// Have two contacts of one stiffness the same tangent, but for rounding?
+    fn same_tangent(one: &Contact<f64>, other: &Contact<f64>, h: f64, stiffness: f64) -> bool {
+        let list = |contact: &Contact<f64>| {
+            let (ee, er, rr) = contact.tangent(h).unwrap();
+            let er = er.to_cols_array();
+            let units = [h, h * h, h * h * h, h, h * h, h * h, h * h * h, h, h * h, h * h * h];
+            let entries = [ee.xx, ee.xy, ee.yy, er[0], er[1], er[2], er[3], rr.xx, rr.xy, rr.yy];
+            entries.into_iter().zip(units).map(|(entry, unit)| entry / unit).collect::<Vec<_>>()
+        };
+        list(one).iter().zip(list(other)).all(|(a, b)| (a - b).abs() < 1e-12 * stiffness)
+    }
+
     fn near(got: &[f64; 4], want: &[f64; 4], tolerance: f64) -> bool {
         let size = want.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         got.iter().zip(want).all(|(got, want)| (got - want).abs() <= tolerance * size)
@@ -640,10 +652,11 @@ mod tests {
                 let closed = Contact::at(&model, &element, &motion, Some(|| q), 1.0).unwrap();
                 prop_assert_eq!(closed.touch, touch);
                 let split = Contact::split(&model, &element, &eta, Some(&q), 1.0, Tangent::Whole).unwrap();
-                for (closed, split) in closed.stiffness.iter().zip(split.stiffness) {
-                    prop_assert!((closed - split).abs() < 1e-13 * (7.0 + 4.0));
-                }
-                prop_assert!(split.offset.iter().all(|offset| offset.abs() < 1e-13 * 11.0));
+                prop_assert!(same_tangent(&closed, &split, h, 7.0 + 4.0));
+                let Integrals::Moments { offset, .. } = split.force else {
+                    return Err(TestCaseError::fail("the split rule gives moments"));
+                };
+                prop_assert!(offset.iter().all(|offset| offset.abs() < 1e-13 * 11.0));
                 let (e, d) = closed.force(&motion, h);
                 let (se, sd) = split.force(&motion, h);
                 prop_assert!(near(&[e.x, e.y / h, d.x, d.y / h], &[se.x, se.y / h, sd.x, sd.y / h], 1e-12));
@@ -653,9 +666,7 @@ mod tests {
             let closed = Contact::at(&plain, &element, &motion, Some(Cubic::default), 0.25).unwrap();
             prop_assert_eq!(closed.touch, Touch::Full);
             let split = Contact::split(&plain, &element, &eta, None, 0.25, Tangent::Whole).unwrap();
-            for (closed, split) in closed.stiffness.iter().zip(split.stiffness) {
-                prop_assert!((closed - split).abs() < 1e-13 * 7.0);
-            }
+            prop_assert!(same_tangent(&closed, &split, h, 7.0));
         }
 
         #[test]
@@ -671,7 +682,7 @@ mod tests {
                 Touch::Free => prop_assert!(below),
                 Touch::High => prop_assert!(within && points().all(|t| q.at(t) >= BOUND_Q - 1e-13)),
                 Touch::Low => prop_assert!(within && points().all(|t| q.at(t) <= -BOUND_Q + 1e-13)),
-                Touch::Mixed => {}
+                Touch::Edge | Touch::Mixed => {}
                 Touch::Full => prop_assert!(false, "the potential is never indifferent"),
             }
             // Without a potential, and with one that acts nowhere, contact alone decides.
@@ -685,7 +696,7 @@ mod tests {
             let bent = scene(power(1.0), ());
             let bent = Touch::of(&bent, &self::element(&bent, 0.3), &eta, Some(|| q));
             prop_assert_eq!(bent == Touch::Free, alone == Touch::Free);
-            prop_assert!(bent == Touch::Free || bent == Touch::Mixed);
+            prop_assert!(matches!(bent, Touch::Free | Touch::Edge | Touch::Mixed));
         }
 
         #[test]

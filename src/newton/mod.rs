@@ -465,15 +465,13 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         scale: T,
         count: &mut Count,
     ) -> Result<Option<Residual<T>>, Halt> {
-        let (current, mut residual, mut t) = (self.current, after, T::one());
+        let (mut residual, mut t) = (after, T::one());
         for _ in 0..HALVINGS {
             if residual.relative() < (T::one() - T::of(0.1) * t) * before.relative() {
                 return Ok(Some(residual));
             }
             t = T::of(0.5) * t;
-            for Place { work, .. } in self.places.iter_mut() {
-                work.states[current] = work.states[1 - current].toward(work.states[current], T::of(0.5));
-            }
+            self.retreat(T::of(0.5));
             let checked = self.check(scale, count);
             residual = self.tried(checked)?;
         }
@@ -584,11 +582,16 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         if t == zero {
             return Ok(Cut::Nowhere);
         }
+        self.retreat(t);
+        Ok(Cut::Shorter)
+    }
+
+    /// Back to the share t of the way from the spare state to the current one.
+    fn retreat(&mut self, t: T) {
         let current = self.current;
         for Place { work, .. } in self.places.iter_mut() {
-            work.states[current] = work.states[spare].toward(work.states[current], t);
+            work.states[current] = work.states[1 - current].toward(work.states[current], t);
         }
-        Ok(Cut::Shorter)
     }
 
     /// Derivative of the energy along the step from the spare state to the current one, at the share t of

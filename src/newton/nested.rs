@@ -119,6 +119,16 @@ pub(super) fn clamp<T: Real, M: Model<T>>(model: &M, x: T, mid: T) -> End<T, cra
     End { held: [true, true], value: -T::Vec2::of(s, slope), condensed: Condensed::default() }
 }
 
+/// Both ends of the beam that was laid into `places`.
+fn ends<T: Real, M: Model<T>>(model: &M, places: &[Place<T, M>]) -> [End<T, crate::sweep::pair::Bending>; 2] {
+    let (length, half) = (model.length(), T::of(0.5));
+    let h = |place: Option<&Place<T, M>>| place.map_or(length, |place| place.element.h);
+    [
+        clamp(model, T::zero(), half * h(places.first())),
+        clamp(model, length, length - half * h(places.last())),
+    ]
+}
+
 /// Is the beam's left end, its right end pressed into the foundation before anything bends?
 fn pressed<T: Real, M: Model<T>>(model: &M, places: &[Place<T, M>]) -> [bool; 2] {
     let (Some(first), Some(last)) = (places.first(), places.last()) else { return [false; 2] };
@@ -152,17 +162,13 @@ pub(crate) fn context<'a, T: Real, M: Model<T>>(
     places: &[Place<T, M>],
     stop: T,
 ) -> Context<'a, T, M> {
-    let length = model.length();
-    let half = T::of(0.5);
-    let (first, last) = match (places.first(), places.last()) {
-        (Some(first), Some(last)) => (first.element, last.element),
-        _ => (Element::blank(), Element::blank()),
-    };
+    let [left, right] = ends(model, places);
+    let first = places.first().filter(|_| electric::conducts_onto(places));
     Context {
         model,
-        left: clamp(model, T::zero(), half * first.right),
-        right: clamp(model, length, length - half * last.h),
-        onto: electric::conducts_onto(places).then(|| electric::Ratio::of(&first)),
+        left,
+        right,
+        onto: first.map(|first| electric::Ratio::of(&first.element)),
         into: electric::conducts_into(places),
         quiet: quiet(model, places, stop),
     }
@@ -398,12 +404,11 @@ pub(crate) struct Last<T: Real, M: Model<T>> {
 
 impl<T: Real, M: Model<T>> Last<T, M> {
     pub(crate) fn of(answer: &Answer<T, M>, model: &M, places: &[Place<T, M>]) -> Self {
-        let Context { left, right, .. } = context(model, places, T::one());
         Self {
             state: answer.state,
             left: answer.left,
             meeting: answer.meeting,
-            ends: [left.value, right.value],
+            ends: ends(model, places).map(|end| end.value),
             bounds: bounds(model),
         }
     }
