@@ -67,6 +67,8 @@ pub trait Real:
     type Mat4: Square<Self::Vec4, [[Self; 4]; 4]>;
     /// 0, as a constant.
     const ZERO: Self;
+    /// Is it `f64`?
+    const DOUBLE: bool;
     /// The nearest representable number.
     fn of(x: f64) -> Self;
     /// As `f64`, exactly.
@@ -145,6 +147,7 @@ macro_rules! real {
             type Vec4 = $v4;
             type Mat4 = $m4;
             const ZERO: Self = 0.0;
+            const DOUBLE: bool = size_of::<Self>() == 8;
             #[inline(always)]
             #[allow(clippy::cast_possible_truncation, reason = "rounding to the scalar is the point")]
             fn of(x: f64) -> Self {

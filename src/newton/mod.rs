@@ -398,7 +398,8 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
 
     /// Had one of the elements an edge of contact in it when they were swept?
     fn edges(&self, swept: &Range<usize>) -> bool {
-        self.places[swept.clone()].iter().any(|place| place.work.touch == Touch::Edge)
+        let edge = |place: &Place<T, M>| place.work.touch == Touch::Edge;
+        self.places.get(swept.clone()).is_some_and(|places| places.iter().any(edge))
     }
 
     /// One full step, where the elements `changed` have changed. By how much it moved the beam: the change of the

@@ -345,6 +345,12 @@ impl Cli {
         if let Some(message) = args.method.conflict() {
             return Some(message);
         }
+        if args.tolerance.is_some() && args.precision == Precision::F32 {
+            return Some("--tolerance makes meshes in double precision; leave --precision f32 out".into());
+        }
+        if args.method.method != MethodName::Newton && args.precision == Precision::F32 {
+            return Some("--method compares in double precision; leave --precision f32 out".into());
+        }
         if args.tolerance.is_some() && args.method.method != MethodName::Newton {
             return Some("--tolerance makes meshes for Newton's method; leave --method out".into());
         }

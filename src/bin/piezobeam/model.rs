@@ -3,7 +3,7 @@
 
 use crate::cli::Precision;
 use crate::profile::Shape;
-use crate::scene_file::{ConductionTable, SceneFile};
+use crate::scene_file::{ConductionTable, ProfileSpec, SceneFile};
 use piezobeam::{
     Beam, Conduction, Error, Foundation, Linear, Load, Mesh, Model, PointLoad, Potential, Power, Problem,
     Profile, Real, Scene, Smooth,
@@ -12,6 +12,9 @@ use piezobeam::{
 /// Something to do with a scene, whatever its types are.
 pub trait Task {
     type Output;
+    /// Is it worth a solver of its own for coefficients that are constant between breaks? It solves the same, faster;
+    /// every solver takes seconds to compile.
+    const LEAN: bool = false;
     fn run<T: Real, M: Model<T>>(self, problem: Problem<'_, T, M>) -> Result<Self::Output, Error>;
 }
 
@@ -25,7 +28,7 @@ pub fn with<K: Task>(
     precision: Precision,
     task: K,
 ) -> Result<K::Output, Error> {
-    let flat = {
+    let flat = || {
         let beam = &file.beam;
         let foundation = file.foundation.as_ref();
         let conduction = file.conduction.as_ref();
@@ -39,10 +42,10 @@ pub fn with<K: Task>(
         ];
         all.into_iter().flatten().all(|profile| profile.stepwise())
     };
-    match (precision, flat) {
-        (Precision::F64, true) => Typed::<f64, true>::of(file, elements).dispatch(task),
-        (Precision::F64, false) => Typed::<f64, false>::of(file, elements).dispatch(task),
-        (Precision::F32, _) => Typed::<f32, false>::of(file, elements).dispatch(task),
+    match precision {
+        Precision::F64 if K::LEAN && flat() => Typed::<f64, true>::of(file, elements).dispatch(task),
+        Precision::F64 => Typed::<f64, false>::of(file, elements).dispatch(task),
+        Precision::F32 => Typed::<f32, false>::of(file, elements).dispatch(task),
     }
 }
 
@@ -151,13 +154,16 @@ where
         let scene = scene.load(Load { transverse, axial, points: points.as_slice() });
         let Some(table) = &self.file.foundation else { return self.finish(scene, task) };
         let stiffness = Shape::<T, FLAT>::new(&table.stiffness);
-        let gap = table.gap.as_ref().filter(|gap| !gap.is_zero()).map(Shape::<T, false>::new);
+        // A gap that is zero is left out of the type only where that is worth a solver.
+        let lean = |gap: &&ProfileSpec| !K::LEAN || !gap.is_zero();
+        let gap = table.gap.as_ref().filter(lean).map(Shape::<T, false>::new);
         let exponent = T::of(table.exponent);
         match (exponent == T::one(), gap) {
-            (true, None) => {
+            (true, None) if K::LEAN => {
                 self.finish(scene.foundation(Foundation { law: Linear(stiffness), gap: () }), task)
             }
-            (true, Some(gap)) => {
+            (true, gap) => {
+                let gap = gap.unwrap_or_else(|| Shape::or_zero(None));
                 self.finish(scene.foundation(Foundation { law: Linear(stiffness), gap }), task)
             }
             (false, gap) => {
