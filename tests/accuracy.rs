@@ -269,6 +269,18 @@ fn accuracy_ends_at_rounding_and_at_the_memory_and_says_so() {
 }
 
 #[test]
+fn a_warm_start_refuses_the_tolerances_that_a_cold_one_does() {
+    let scene = named("partial").scene;
+    let mut memory = HeapWorkspace::new();
+    let mut adaptive = Adaptive::new(Mesh::uniform(16), &mut memory);
+    for tolerance in [0.0, 1.0, -1e-3, f64::NAN] {
+        assert!(adaptive.solve(&scene, 1e-4, &settings()).is_ok());
+        let refused = adaptive.solve(&scene, tolerance, &settings()).err();
+        assert!(refused.is_some_and(|e| e.to_string().starts_with("tolerance: expected")), "{tolerance}");
+    }
+}
+
+#[test]
 fn a_beam_at_rest_needs_no_mesh() {
     let scene = Scene::new(1.0, Beam::elastic(5000.0)).foundation(Foundation { law: Linear(1e8), gap: () });
     let problem = Problem::new(scene, Mesh::uniform(4)).expect("a scene");
