@@ -269,6 +269,27 @@ fn accuracy_ends_at_rounding_and_at_the_memory_and_says_so() {
 }
 
 #[test]
+fn a_certificate_does_not_divide_rounding() {
+    // Exact but for rounding, on any mesh.
+    let points = [PointLoad { x: 0.37, force: 100.0, moment: 30.0 }];
+    let scene =
+        Scene::new(1.0, Beam::elastic(5000.0)).load(Load { transverse: (), axial: (), points });
+    let (found, _) = certified(&scene, 100, &[]);
+    assert_eq!(found.report.elements, 400);
+    assert!(found.bending_bound.is_some_and(|bound| bound < tol::EXACT));
+
+    let scene = Scene::new(1.0_f32, Beam::elastic(5000.0))
+        .foundation(Foundation { law: Linear(1e8), gap: () })
+        .load(Load { transverse: 1e6, axial: (), points: () });
+    let problem = Problem::new(scene, Mesh::uniform(1000)).expect("a scene");
+    let (mut memory, mut finer) = (HeapWorkspace::new(), HeapWorkspace::new());
+    let solution = problem.solve(&mut memory, &Settings::default()).expect("settings");
+    let found = solution.certify(&mut finer, &Settings::default()).expect("memory");
+    assert_eq!(found.report.elements, 4000);
+    assert!(found.bending_bound.is_some_and(|bound| bound < 1e-2));
+}
+
+#[test]
 fn a_warm_start_refuses_the_tolerances_that_a_cold_one_does() {
     let scene = named("partial").scene;
     let mut memory = HeapWorkspace::new();
