@@ -296,7 +296,7 @@ fn run<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
         let shares =
             Shares { places: storage::first(memory, elements), shares: 1 - answer.state, join: true };
         let plan = if wanted.elements > room { shares.plan(allowed, room) } else { wanted };
-        if passes == PASSES || (wanted.elements > room && plan.elements <= elements) {
+        if passes == PASSES || (wanted.elements > room && !(elements + 1..=room).contains(&plan.elements)) {
             break (estimate, Reached::Capacity);
         }
         divide::remesh(scene, memory, elements, answer.state, plan)?;
