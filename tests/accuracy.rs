@@ -269,6 +269,79 @@ fn accuracy_ends_at_rounding_and_at_the_memory_and_says_so() {
 }
 
 #[test]
+fn a_certificate_does_not_divide_rounding() {
+    // Exact but for rounding, on any mesh.
+    let points = [PointLoad { x: 0.37, force: 100.0, moment: 30.0 }];
+    let scene = Scene::new(1.0, Beam::elastic(5000.0)).load(Load { transverse: (), axial: (), points });
+    let (found, _) = certified(&scene, 100, &[]);
+    assert_eq!(found.report.elements, 400);
+    assert!(found.bending_bound.is_some_and(|bound| bound < tol::EXACT));
+
+    let scene = Scene::new(1.0_f32, Beam::elastic(5000.0))
+        .foundation(Foundation { law: Linear(1e8), gap: () })
+        .load(Load { transverse: 1e6, axial: (), points: () });
+    let problem = Problem::new(scene, Mesh::uniform(1000)).expect("a scene");
+    let (mut memory, mut finer) = (HeapWorkspace::new(), HeapWorkspace::new());
+    let solution = problem.solve(&mut memory, &Settings::default()).expect("settings");
+    let found = solution.certify(&mut finer, &Settings::default()).expect("memory");
+    assert_eq!(found.report.elements, 4000);
+    assert!(found.bending_bound.is_some_and(|bound| bound < 1e-2));
+}
+
+#[test]
+fn meshes_resolve_loads_that_no_first_mesh_sees() {
+    // The fourth derivative of C xi is sin(w x): xi is sin(w x) / w^4 and the cubic that clamps it.
+    let w = 200.0_f64;
+    let transverse = piezobeam::Function(move |x: f64| (w * x).sin());
+    let scene = Scene::new(1.0, Beam::elastic(1.0)).load(Load { transverse, axial: (), points: () });
+    let (sin, cos) = w.sin_cos();
+    let b = -1.0 / w.powi(3);
+    let (value, slope) = (-sin / w.powi(4) - b, -cos / w.powi(3) - b);
+    let exact = |x: f64| {
+        let cubic = b + x * (3.0 * value - slope + x * (slope - 2.0 * value));
+        (w * x).sin() / w.powi(4) + x * cubic
+    };
+    let problem = Problem::new(scene, Mesh::uniform(8)).expect("a scene");
+    let mut memory = HeapWorkspace::new();
+    let found = problem.solve_to(&mut memory, 1e-6, &settings()).expect("a tolerance");
+    assert_eq!(found.reached, Reached::Tolerance);
+    let at = points(1000, 1.0);
+    let got: Vec<f64> = at.iter().map(|&x| found.solution.at(x).bending).collect();
+    let want: Vec<f64> = at.iter().map(|&x| exact(x)).collect();
+    assert!(relative(&got, &want) <= 1e-6, "{:e}", relative(&got, &want));
+}
+
+#[test]
+fn one_element_hides_no_law_and_has_room_or_says_so() {
+    let load = Load { transverse: 1e6, axial: (), points: () };
+    let beam = Scene::new(1.0, Beam::elastic(5000.0)).load(load);
+    // The one element's cubic is straight: what the law is shows on a finer mesh.
+    let scene = beam.foundation(Foundation { law: Law(|_: f64, _: f64| (f64::NAN, f64::NAN)), gap: () });
+    let problem = Problem::new(scene, Mesh::uniform(1)).expect("a scene");
+    let mut memory = HeapWorkspace::new();
+    let found = problem.solve_to(&mut memory, 1e-6, &settings()).expect("a tolerance");
+    assert_eq!(found.reached, Reached::Unsolved);
+
+    let scene = beam.foundation(Foundation { law: Linear(1e30), gap: () });
+    let problem = Problem::new(scene, Mesh::uniform(1)).expect("a scene");
+    let mut memory = problem.workspace::<1>();
+    let found = problem.solve_to(&mut memory, 1e-6, &settings()).expect("a tolerance");
+    assert_eq!(found.reached, Reached::Capacity);
+}
+
+#[test]
+fn a_warm_start_refuses_the_tolerances_that_a_cold_one_does() {
+    let scene = named("partial").scene;
+    let mut memory = HeapWorkspace::new();
+    let mut adaptive = Adaptive::new(Mesh::uniform(16), &mut memory);
+    for tolerance in [0.0, 1.0, -1e-3, f64::NAN] {
+        assert!(adaptive.solve(&scene, 1e-4, &settings()).is_ok());
+        let refused = adaptive.solve(&scene, tolerance, &settings()).err();
+        assert!(refused.is_some_and(|e| e.to_string().starts_with("tolerance: expected")), "{tolerance}");
+    }
+}
+
+#[test]
 fn a_beam_at_rest_needs_no_mesh() {
     let scene = Scene::new(1.0, Beam::elastic(5000.0)).foundation(Foundation { law: Linear(1e8), gap: () });
     let problem = Problem::new(scene, Mesh::uniform(4)).expect("a scene");

@@ -93,8 +93,9 @@ impl<T: Real, M: Model<T>> Problem<'_, T, M> {
         tolerance: T,
         settings: &Settings<T>,
     ) -> Result<Adapted<'s, T, M>, Error> {
-        let (scene, mesh) = (self.scene(), &self.mesh);
-        let start = begin(scene, mesh, memory, tolerance, settings)?;
+        check(tolerance)?;
+        let scene = self.scene();
+        let start = begin(scene, &self.mesh, memory, settings)?;
         run(scene, memory, start, tolerance, settings)
     }
 }
@@ -170,6 +171,7 @@ impl<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized> Adaptive<'s, T, M, S> 
         settings: &Settings<T>,
     ) -> Result<Adapted<'a, T, M>, Error> {
         let last = self.last.take();
+        check(tolerance)?;
         scene::validate(scene)?;
         self.mesh.validate(scene.length())?;
         settings.validate()?;
@@ -186,7 +188,7 @@ impl<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized> Adaptive<'s, T, M, S> 
         }
         let start = match start {
             Some(start) => start,
-            None => begin(scene, &self.mesh, self.memory, tolerance, settings)?,
+            None => begin(scene, &self.mesh, self.memory, settings)?,
         };
         let found = run(scene, self.memory, start, tolerance, settings)?;
         if found.solution.report().status == Status::Converged {
@@ -222,6 +224,12 @@ fn carry_over<T: Real, M: Model<T>>(
     Ok(true)
 }
 
+/// Is it one that can be asked for?
+fn check<T: Real>(tolerance: T) -> Result<(), Error> {
+    let ok = tolerance > T::zero() && tolerance < T::one();
+    expect(ok, "tolerance", error::Place::Whole, "a number between 0 and 1", tolerance)
+}
+
 /// A solution on a first mesh.
 struct Start<T: Real, M: Model<T>> {
     elements: usize,
@@ -236,11 +244,8 @@ fn begin<T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
     scene: &M,
     mesh: &Mesh<'_, T>,
     memory: &mut S,
-    tolerance: T,
     settings: &Settings<T>,
 ) -> Result<Start<T, M>, Error> {
-    let ok = tolerance > T::zero() && tolerance < T::one();
-    expect(ok, "tolerance", error::Place::Whole, "a number between 0 and 1", tolerance)?;
     let (places, levels) = problem::lay(scene, mesh, memory)?;
     let answer = nested::solve(scene, places, &levels, settings)?;
     let report = answer.report;
@@ -291,7 +296,7 @@ fn run<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
         let shares =
             Shares { places: storage::first(memory, elements), shares: 1 - answer.state, join: true };
         let plan = if wanted.elements > room { shares.plan(allowed, room) } else { wanted };
-        if passes == PASSES || (wanted.elements > room && plan.elements <= elements) {
+        if passes == PASSES || (wanted.elements > room && !(elements + 1..=room).contains(&plan.elements)) {
             break (estimate, Reached::Capacity);
         }
         divide::remesh(scene, memory, elements, answer.state, plan)?;

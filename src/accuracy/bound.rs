@@ -43,6 +43,8 @@ pub(super) struct Bounds<T> {
 pub(super) struct Imbalance<T> {
     /// Of the statical moment less that of the deflection, and what rounding may hide of it.
     pub(super) mismatch: T,
+    /// The latter.
+    pub(super) rounding: T,
     /// Of the deflection.
     pub(super) size: T,
 }
@@ -126,6 +128,7 @@ pub(super) fn imbalance<T: Real, M: Model<T>>(
     let rounding = answer.report.floor * largest * one.sqrt();
     Imbalance {
         mismatch: (mismatch.value() - spared).max(T::zero()).sqrt() + rounding,
+        rounding,
         size: size.value().sqrt(),
     }
 }
@@ -138,7 +141,7 @@ impl<T: Real, M: Model<T>> Solution<'_, T, M> {
     /// cancels. The current's error is at most 2 mu2 A |delta|, A the mean penetration of both.
     pub(super) fn bounds(
         &self,
-        Imbalance { mismatch, size }: Imbalance<T>,
+        Imbalance { mismatch, size, .. }: Imbalance<T>,
         kappa: Robustness<T>,
     ) -> Bounds<T> {
         let bending = mismatch / kappa.bending;

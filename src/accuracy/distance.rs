@@ -31,8 +31,6 @@ impl<T: Real> Distance<T> {
         let (mut bending, mut electric) = (Sum::<T>::default(), Sum::<T>::default());
         let mut size = Sum::<T>::default();
         let mut fields = [(T::zero(), T::zero()); 3];
-        // Without conduction into the potential both have it, and the stretching, without error.
-        let into = electric::conducts_into(coarse.places);
         let mut at = 0;
         for (i, place) in fine.places.iter().enumerate() {
             let Element { right: x, h, bending: stiffness, .. } = place.element;
@@ -54,7 +52,8 @@ impl<T: Real> Distance<T> {
             bending.add(apart.times(stiffness.times(apart)));
             let part = fine.solved(i);
             size.add(part.bend().times(stiffness.times(part.bend())));
-            if into {
+            // Without conduction into the potential that is what Gauss's rule misses of coefficients and loads.
+            if electric::present::<T, M>() {
                 let beam = fine.scene().beam();
                 for (z, weight) in gauss::<5>() {
                     let (z, x) = (T::of(z), place.element.x(T::of(z)));

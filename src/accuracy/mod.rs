@@ -114,6 +114,7 @@ impl<T: Real, M: Model<T>> Solution<'_, T, M> {
             }
         }
         let (mut elements, mut visits, mut pass) = (needed, 0, 1);
+        let mut last = None;
         loop {
             let places = storage::first(memory, elements);
             let mut answer = nested::sharpen(scene, places, T::one(), settings);
@@ -121,12 +122,16 @@ impl<T: Real, M: Model<T>> Solution<'_, T, M> {
             answer.report.element_visits = visits;
             let imbalance = bound::imbalance(scene, places, &answer);
             let finer = Solution::new(scene, &*places, answer);
-            let distance = Distance::between(self, &finer).ok_or(Error::Capacity { needed, available })?;
+            // Parts so short that rounding moves their nodes say no more than those before.
+            let Some(distance) = Distance::between(self, &finer) else {
+                return last.ok_or(Error::Capacity { needed, available });
+            };
             let bounds =
                 finer.robustness().filter(|_| !self.rigid).map(|kappa| finer.bounds(imbalance, kappa));
             let certificate = Certificate::of::<M>(&distance, bounds, answer.report);
-            // Where layers of the contact are not resolved the second term outweighs the first: finer there.
-            let allowed = T::of(SECOND) * distance.bending;
+            // Where layers of the contact are not resolved the second term outweighs the first: finer there. Rounding
+            // is not divided.
+            let allowed = (T::of(SECOND) * distance.bending).max(T::of(2.0) * imbalance.rounding);
             if bounds.is_none()
                 || imbalance.mismatch <= allowed
                 || !answer.report.is_solved()
@@ -140,7 +145,7 @@ impl<T: Real, M: Model<T>> Solution<'_, T, M> {
                 return Ok(certificate);
             }
             divide::remesh(scene, memory, elements, answer.state, plan)?;
-            (elements, pass) = (plan.elements, pass + 1);
+            (elements, pass, last) = (plan.elements, pass + 1, Some(certificate));
         }
     }
 }
