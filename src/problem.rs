@@ -95,12 +95,15 @@ impl<'a, T: Real, M: Model<T>> Problem<'a, T, M> {
     }
 }
 
+/// Places that a scene was laid into, and where each mesh lies in them.
+type Laid<'m, T, M> = (&'m mut [Place<T, M>], Levels);
+
 /// Samples `scene` on `mesh`, and the coarser meshes behind it.
 pub(crate) fn lay<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
     scene: &M,
     mesh: &Mesh<'_, T>,
     memory: &'s mut S,
-) -> Result<(&'s mut [Place<T, M>], Levels), Error> {
+) -> Result<Laid<'s, T, M>, Error> {
     let (elements, places) = room(mesh, scene, memory)?;
     let mut free = places.iter_mut();
     mesh.lay(scene, |left, right, stop| {

@@ -95,7 +95,7 @@ fn stretching_and_potential_are_within_their_bound() {
     for (mu1, mu2) in [(0.0, 3.0), (0.3, 3.0), (0.3, 0.0), (0.0, 0.0)] {
         let scene = conducting(mu1, mu2, 0.3);
         let (found, [coarse, fine]) = certified(&scene, n, &x);
-        let (mut error, mut size) = (0.0, 0.0);
+        let (mut error, mut size) = (0.0_f64, 0.0_f64);
         for (a, b) in coarse.iter().zip(&fine) {
             // (u', q') from the fluxes: [eps, P; -P, EA] (sigma, D) / det.
             let gradients = |sigma: f64, charge: f64| {
@@ -109,7 +109,7 @@ fn stretching_and_potential_are_within_their_bound() {
             error += energy(gradients(sa - sb, da - db));
             size += energy(gradients(sb, db));
         }
-        let (error, bound) = ((error / size as f64).sqrt(), found.electric_bound.expect("a bound"));
+        let (error, bound) = ((error / size).sqrt(), found.electric_bound.expect("a bound"));
         assert!(bound >= error, "mu = {mu1}, {mu2}: bound {bound:e}, error {error:e}");
         assert!(mu2 > 0.0 || bound < tol::EXACT, "without a current there is no error: {bound:e}");
         for (estimate, get) in [

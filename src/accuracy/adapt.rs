@@ -261,6 +261,7 @@ fn run<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
     settings: &Settings<T>,
 ) -> Result<Adapted<'s, T, M>, Error> {
     let Start { mut elements, mut answer, mut visits, warm } = start;
+    let rigid = answer.rigid;
     let (asked, floor) = (tolerance, T::of(FLOOR) * T::epsilon());
     let tolerance = asked.max(floor);
     // What a mesh is solved to, when `target` is the error that it is made for.
@@ -302,17 +303,24 @@ fn run<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
         divide::remesh(scene, memory, elements, answer.state, plan)?;
         elements = plan.elements;
         let (settings, units) = solved_to(target, visits);
-        answer = nested::sharpen(scene, storage::first(memory, elements), units, &settings);
+        let places = storage::first(memory, elements);
+        if rigid {
+            // A foundation that is rigid to the elements is so to smaller ones when it is stiffer.
+            for place in places.iter_mut() {
+                place.element.soften(scene.foundation().law);
+            }
+        }
+        answer = Answer { rigid, ..nested::sharpen(scene, places, units, &settings) };
         visits += answer.report.element_visits;
         (passes, finished, last) = (passes + 1, target <= tolerance, Some(pass));
     };
     let places = storage::first(memory, elements);
-    if !finished {
+    if !finished && reached != Reached::Unsolved {
         for place in places.iter_mut() {
             place.work.states = States::both(place.work.states[answer.state]);
         }
         let (settings, units) = solved_to(tolerance, visits);
-        answer = nested::sharpen(scene, places, units, &settings);
+        answer = Answer { rigid, ..nested::sharpen(scene, places, units, &settings) };
         visits += answer.report.element_visits;
     }
     let report = &mut answer.report;

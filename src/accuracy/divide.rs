@@ -29,8 +29,8 @@ pub(super) fn part<T: Real, M: Model<T>>(
         if j == parts { element.right } else { left + (element.right - left) * share(j) }
     };
     let last = j + 1 == parts;
-    let mut part = Place::default();
-    part.element = Element::sample(model, node(j), node(j + 1), last && element.stop)?;
+    let sampled = Element::sample(model, node(j), node(j + 1), last && element.stop)?;
+    let mut part = Place { element: sampled, ..Place::default() };
     let State { e, d } = whole.work.states[state];
     let motion = Motion::new(element.h, e, d).part(T::one() - share(j + 1), share(1));
     part.work.states = States::both(State { e: motion.e, d: motion.d });
@@ -44,8 +44,8 @@ fn joined<T: Real, M: Model<T>>(
     left: T,
     state: usize,
 ) -> Result<Place<T, M>, Error> {
-    let mut whole = Place::default();
-    whole.element = Element::sample(model, left, east.element.right, east.element.stop)?;
+    let element = Element::sample(model, left, east.element.right, east.element.stop)?;
+    let mut whole = Place { element, ..Place::default() };
     let (near, far) = (east.work.states[state], west.work.states[state]);
     // e = d_left - T d_right along both.
     let e = far.e + Bending::carry(west.element.h, near.e);
@@ -197,8 +197,8 @@ mod tests {
     }
 
     fn whole<M: Model<f64>>(model: &M, stop: bool) -> Place<f64, M> {
-        let mut place = Place::default();
-        place.element = Element::sample(model, 0.2, 0.8, stop).unwrap();
+        let element = Element::sample(model, 0.2, 0.8, stop).unwrap();
+        let mut place = Place { element, ..Place::default() };
         place.work.states[0] = State { e: DVec2::new(0.3, -0.7), d: DVec2::new(1.1, 0.4) };
         place
     }
@@ -239,9 +239,9 @@ mod tests {
     fn mesh<M: Model<f64>>(model: &M, shares: &[f64]) -> Vec<Place<f64, M>> {
         let h = 1.0 / shares.len() as f64;
         let place = |(i, &share): (usize, &f64)| {
-            let mut place = Place::default();
             let left = i as f64 * h;
-            place.element = Element::sample(model, left, left + h, i + 1 == shares.len()).unwrap();
+            let element = Element::sample(model, left, left + h, i + 1 == shares.len()).unwrap();
+            let mut place = Place { element, ..Place::default() };
             place.work.states[1].e = DVec2::new(share, 0.0);
             place
         };

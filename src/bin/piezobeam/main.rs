@@ -67,7 +67,7 @@ fn solve(args: &SolveArgs) -> Outcome {
     let file = scene_file::read(&args.scene)?;
     let run = |samples| {
         let SolveArgs { stop, tolerance, sensitivities, ref method, .. } = *args;
-        let task = tasks::Solve { stop, tolerance, samples, sensitivities, method: method.clone() };
+        let task = tasks::Solve { stop, tolerance, samples, sensitivities, method: *method };
         let elements = args.elements.or(tolerance.map(|_| FIRST_ELEMENTS));
         model::with(&file, elements, args.precision, task).map_err(|e| file.complaint(&e))
     };
