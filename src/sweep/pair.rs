@@ -25,7 +25,7 @@ impl<T: Real> Symmetric<T> {
     /// The inverse; `None` where it does not exist or is not finite. It need not be positive definite: a
     /// conducting foundation at a negative potential pulls.
     #[inline(always)]
-    fn inverse(&self) -> Option<Self> {
+    pub(crate) fn inverse(&self) -> Option<Self> {
         let det = self.xx * self.yy - self.xy * self.xy;
         let scale = T::one() / det;
         // Away from the ends of the range the determinant says it all.
