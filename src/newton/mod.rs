@@ -43,7 +43,7 @@ use crate::element::Element;
 use crate::element::contact::{Contact, Fault, Touch};
 use crate::element::hermite::{self, Motion};
 use crate::law::Compliance;
-use crate::profile::Profile;
+use crate::profile::{Piece, Profile};
 use crate::quadrature::POINTS;
 use crate::real::{Pair, Real, Sum};
 use crate::scene::Model;
@@ -744,9 +744,13 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         Ok(if residual.relative() <= stop { Outcome::Converged } else { Outcome::Stalled })
     }
 
-    /// Are there so many elements that the rounding of sweeps shows before that of the contact?
+    /// Are there so many elements that the rounding of sweeps shows before that of the contact, whose layers they
+    /// resolve? (Where they do not, the nodes of a coarser mesh are better than sums of its relative unknowns.)
     pub(crate) fn is_fine(&self) -> bool {
-        self.places.len() >= FINE
+        let resolved = |place: &Place<T, M>| {
+            !M::Law::LINEAR || place.element.law.mean() <= T::of(RESOLVED) * place.element.rigid()
+        };
+        self.places.len() >= FINE && self.places.iter().all(resolved)
     }
 
     /// Units in the last place of a residual that is good enough: rounding that grows with the elements is for the
@@ -1064,6 +1068,9 @@ const FEW: f64 = 1000.0;
 
 /// Elements from which on the rounding of sweeps is worth a balance before the first of them.
 const FINE: usize = 4000;
+
+/// Stiffness of a foundation whose layers an element resolves, over that of one that is rigid to it.
+const RESOLVED: f64 = 1e-4;
 
 /// A step that may be all rounding: if the next one is not shorter by half, statics is asked.
 const NEAR: f64 = 1e-7;
