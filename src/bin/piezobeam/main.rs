@@ -71,12 +71,15 @@ fn solve(args: &SolveArgs) -> Outcome {
         let elements = args.elements.or(tolerance.map(|_| FIRST_ELEMENTS));
         model::with(&file, elements, args.precision, task).map_err(|e| file.complaint(&e))
     };
-    let solved = run(args.samples)?;
-    let converged = solved.report.converged();
-    let picture = picture(&file, solved);
-    let text = match args.format {
+    let samples = match args.format {
         // Extremes are looked for between the samples asked for, too.
-        Format::Text => render::text::solve(&self::picture(&file, run(args.samples.max(TEXT_SAMPLES))?)),
+        Format::Text => args.samples.max(TEXT_SAMPLES),
+        Format::Json | Format::Csv => args.samples,
+    };
+    let picture = picture(&file, run(samples)?);
+    let converged = picture.report.converged();
+    let text = match args.format {
+        Format::Text => render::text::solve(&picture),
         Format::Json => render::json::solve(&picture.report),
         Format::Csv => render::csv::solve(&picture.report.samples),
     };

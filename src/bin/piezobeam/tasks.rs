@@ -100,7 +100,7 @@ impl Solve {
     fn solved<T: Real, M: Model<T>>(&self, solution: &Solution<'_, T, M>, settings: &Settings<T>) -> Solved {
         let mut solved = solved(solution, self.samples);
         let report = &mut solved.report;
-        // Compiled once: of single precision the error is rounding before it is the mesh's.
+        // In double precision only, to compile it once: in single precision rounding is soon more than the mesh's error.
         if T::DOUBLE && report.converged() && report.elements <= CERTIFIED {
             // Without a mesh that divides this one, to rounding, there is no certificate.
             let Ok(found) = solution.certify(&mut HeapWorkspace::new(), settings) else { return solved };
