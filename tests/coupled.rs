@@ -4,11 +4,11 @@
 mod common;
 
 use common::strong::{Numbers, numbers};
-use common::{fields, named, points, relative, solved, tolerances as tol};
+use common::{fields, fixed, named, points, relative, solved, tolerances as tol};
 use piezobeam::{Conduction, Foundation, Linear, Load, Mesh, Polynomial, Potential, Scene, Status, Steps};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
-use proptest::test_runner::{RngAlgorithm, RngSeed, TestRunner};
+use proptest::test_runner::TestRunner;
 
 /// Status and visits per element of a scene, whose fields have to be numbers and whose foundation may not pull.
 fn outcome(n: &Numbers, mu2: f64) -> Result<(Status, f64), TestCaseError> {
@@ -43,13 +43,7 @@ fn outcome(n: &Numbers, mu2: f64) -> Result<(Status, f64), TestCaseError> {
 
 proptest! {
     // The seed is fixed: of other seeds' scenes about one in 6000, on a handful of elements, ends as stagnation.
-    #![proptest_config(ProptestConfig {
-        cases: 500,
-        failure_persistence: None,
-        rng_algorithm: RngAlgorithm::ChaCha,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(fixed(500))]
 
     #[test]
     fn two_way_conduction_far_past_uniqueness_converges(n in numbers(2.0)) {

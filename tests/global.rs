@@ -4,12 +4,11 @@
 
 mod common;
 
-use common::{Shape, points, solved, tolerances as tol};
+use common::{Shape, fixed, points, solved, tolerances as tol};
 use piezobeam::{
     Beam, Foundation, HeapWorkspace, Law, Load, Mesh, Model, Power, Problem, Scene, Settings, Status,
 };
 use proptest::prelude::*;
-use proptest::test_runner::{RngAlgorithm, RngSeed};
 
 /// A scene whose numbers are powers of ten.
 #[derive(Clone, Debug)]
@@ -89,16 +88,6 @@ fn hard(rigidity: std::ops::Range<f64>) -> impl Strategy<Value = Hard> {
             Hard { length, bending, stiffness, exponent, breaks, bends, gap, n, ratio }
         },
     )
-}
-
-fn fixed(cases: u32) -> ProptestConfig {
-    ProptestConfig {
-        cases,
-        failure_persistence: None,
-        rng_algorithm: RngAlgorithm::ChaCha,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    }
 }
 
 /// Solved, nowhere pulled, and with bounded work.

@@ -3,13 +3,12 @@
 
 mod common;
 
-use common::{named, tolerances as tol};
+use common::{fixed, named, tolerances as tol};
 use piezobeam::{
     Beam, BermudezMoreno, Compared, Foundation, HeapWorkspace, Law, Linear, Load, Mesh, Method, Model, Power,
     Prepared, Problem, Real, Scene, SensitivityError, Settings, Status, Steps, Tabulated,
 };
 use proptest::prelude::*;
-use proptest::test_runner::{RngAlgorithm, RngSeed};
 
 const DUAL: Method<f64> = Method::BermudezMoreno(BermudezMoreno { omega: None, mu: None, rho: None });
 const METHODS: [Method<f64>; 3] = [Method::Elementwise, Method::Gauss, DUAL];
@@ -296,17 +295,6 @@ fn other_laws_and_precisions_are_seen_too() {
         let found =
             prepared(&single, 32, |beam| beam.solve_by(&method, &Settings::default())).expect("in range");
         assert_eq!(found.report.status, Status::Converged, "{method:?}: {found:?}");
-    }
-}
-
-/// A fixed seed, so that a run repeats.
-fn fixed(cases: u32) -> ProptestConfig {
-    ProptestConfig {
-        cases,
-        failure_persistence: None,
-        rng_algorithm: RngAlgorithm::ChaCha,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
     }
 }
 

@@ -5,6 +5,7 @@ use piezobeam::{
     Beam, Conduction, Cubic, Error, Fields, Flat, Foundation, HeapWorkspace, Load, Mesh, Model, Potential,
     Power, Problem, Profile, Real, Report, Scene, Settings, Smooth, Solution,
 };
+use proptest::test_runner::{Config as ProptestConfig, RngAlgorithm, RngSeed};
 use serde_json::Value;
 
 pub mod honest;
@@ -169,4 +170,15 @@ pub fn fields<T: Real, M: Model<T>>(scene: M, mesh: Mesh<'_, T>, x: &[T]) -> (Re
 /// `n` + 1 points from 0 to `length`.
 pub fn points(n: u32, length: f64) -> Vec<f64> {
     (0..=n).map(|i| length * f64::from(i) / f64::from(n)).collect()
+}
+
+/// So many random cases with a fixed seed, so that a run repeats.
+pub fn fixed(cases: u32) -> ProptestConfig {
+    ProptestConfig {
+        cases,
+        failure_persistence: None,
+        rng_algorithm: RngAlgorithm::ChaCha,
+        rng_seed: RngSeed::Fixed(1),
+        ..ProptestConfig::default()
+    }
 }
