@@ -457,6 +457,14 @@ pub(crate) fn next_break<T: Real, M: Model<T>>(model: &M, x: T) -> T {
     if next > length - tiny { length } else { next }
 }
 
+/// The concentrated loads of a node at x: those within rounding of it, as [`next_break`] has it.
+pub(crate) fn points_at<T: Real, M: Model<T>>(model: &M, x: T) -> impl Iterator<Item = &PointLoad<T>> {
+    let tiny = T::of(16.0) * T::epsilon() * model.length();
+    let points = model.load().points;
+    let first = points.partition_point(|point| x - point.x > tiny);
+    points.iter().skip(first).take_while(move |point| point.x - x <= tiny)
+}
+
 /// Shapes, signs and finiteness of all that needs no mesh.
 pub(crate) fn validate<T: Real, M: Model<T>>(model: &M) -> Result<(), Error> {
     let positive = "a finite number > 0";

@@ -364,7 +364,7 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
     }
 
     /// The same under the potential `q`.
-    pub(crate) fn forces_by(&self, t: T, q: impl FnOnce() -> T) -> [T; 2] {
+    fn forces_by(&self, t: T, q: impl FnOnce() -> T) -> [T; 2] {
         let r = self.eta.at(t);
         if self.free || r <= T::zero() {
             return [T::zero(); 2];
@@ -406,7 +406,12 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
 
     /// Transverse load less contact at t \[N/m\].
     pub(crate) fn net(&self, t: T) -> T {
-        let [p, drive] = self.forces(t);
+        self.net_by(t, || self.q.at(t))
+    }
+
+    /// The same under the potential `q`.
+    pub(crate) fn net_by(&self, t: T, q: impl FnOnce() -> T) -> T {
+        let [p, drive] = self.forces_by(t, q);
         // Forces of the foundation first: an attraction may all but cancel a pressure far larger than the load.
         self.scene.load().transverse.value(self.element.x(t), self.mid) - (p + drive)
     }

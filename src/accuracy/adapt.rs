@@ -179,7 +179,7 @@ impl<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized> Adaptive<'s, T, M, S> 
         if let Some((elements, state)) = last {
             let places = storage::first(self.memory, elements);
             if carry_over(scene, places, state)? {
-                let answer = nested::sharpen(scene, places, T::infinity(), settings);
+                let answer = nested::sharpen(scene, places, false, T::infinity(), settings);
                 let visits = answer.report.element_visits;
                 if answer.report.status == Status::Converged {
                     start = Some(Start { elements, answer, visits, warm: true });
@@ -304,13 +304,7 @@ fn run<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
         elements = plan.elements;
         let (settings, units) = solved_to(target, visits);
         let places = storage::first(memory, elements);
-        if rigid {
-            // A foundation that is rigid to the elements is so to smaller ones when it is stiffer.
-            for place in places.iter_mut() {
-                place.element.soften(scene.foundation().law);
-            }
-        }
-        answer = Answer { rigid, ..nested::sharpen(scene, places, units, &settings) };
+        answer = nested::sharpen(scene, places, rigid, units, &settings);
         visits += answer.report.element_visits;
         (passes, finished, last) = (passes + 1, target <= tolerance, Some(pass));
     };
@@ -320,7 +314,7 @@ fn run<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
             place.work.states = States::both(place.work.states[answer.state]);
         }
         let (settings, units) = solved_to(tolerance, visits);
-        answer = Answer { rigid, ..nested::sharpen(scene, places, units, &settings) };
+        answer = nested::sharpen(scene, places, rigid, units, &settings);
         visits += answer.report.element_visits;
     }
     let report = &mut answer.report;

@@ -24,7 +24,7 @@ use crate::newton::nested::Answer;
 use crate::profile::{Piece, Profile, Smooth};
 use crate::quadrature::{POINTS, gauss};
 use crate::real::{Pair, Real, Sum};
-use crate::scene::Model;
+use crate::scene::{self, Model};
 use crate::solution::{Solution, Solved};
 use crate::storage::Place;
 use arrayvec::ArrayVec;
@@ -113,11 +113,9 @@ pub(super) fn imbalance<T: Real, M: Model<T>>(
             along.carry(&mut statics);
         }
         mismatch.add(own);
-        for point in scene.load().points {
-            if (point.x - element.right).abs() <= T::of(16.0) * T::epsilon() * length {
-                statics.shear.add(point.force);
-                statics.moment.add(-point.moment);
-            }
+        for point in scene::points_at(scene, element.right) {
+            statics.shear.add(point.force);
+            statics.moment.add(-point.moment);
         }
         places[i].work.states[1 - answer.state].e = T::Vec2::of(own, T::zero());
     }
@@ -178,14 +176,11 @@ impl<T: Real, M: Model<T>> Solution<'_, T, M> {
 
     /// The energy norm of stretching and potential.
     fn electric_size(&self) -> T {
-        let (beam, mut size) = (self.scene().beam(), Sum::<T>::default());
+        let mut size = Sum::<T>::default();
         for i in 0..self.places.len() {
             let solved = self.solved(i);
             for (z, weight) in gauss::<POINTS>() {
-                let x = solved.element.x(T::of(z));
-                let (u, q) = solved.gradients(T::of(z));
-                let energy =
-                    beam.axial.value(x, solved.mid) * u * u + beam.permittivity.value(x, solved.mid) * q * q;
+                let energy = density(&solved, T::of(z), solved.gradients(T::of(z)));
                 size.add(T::of(weight) * solved.element.h * energy);
             }
         }
@@ -237,11 +232,15 @@ impl<T: Real, M: Model<T>> Solution<'_, T, M> {
     }
 }
 
+/// Twice the energy per length EA u'^2 + eps q'^2 of gradients (u', q') at t \[N\].
+pub(super) fn density<T: Real, M: Model<T>>(solved: &Solved<'_, T, M>, t: T, (u, q): (T, T)) -> T {
+    let (beam, x) = (solved.scene.beam(), solved.element.x(t));
+    beam.axial.value(x, solved.mid) * u * u + beam.permittivity.value(x, solved.mid) * q * q
+}
+
 /// Transverse load less contact at t, with the potential as it is and not its cubic \[N/m\].
 fn net<T: Real, M: Model<T>>(solved: &Solved<'_, T, M>, t: T) -> T {
-    let [p, drive] =
-        solved.forces_by(t, || if solved.element.conducts_onto() { solved.potential(t) } else { T::zero() });
-    solved.scene.load().transverse.value(solved.element.x(t), solved.mid) - p - drive
+    solved.net_by(t, || if solved.element.conducts_onto() { solved.potential(t) } else { T::zero() })
 }
 
 /// A stretch of the beam between two kinks, z = 0 at its right end and 1 at its left one.

@@ -1,8 +1,8 @@
 //! How far apart two discrete solutions are, one on a mesh that divides the other's.
 
+use super::bound::density;
 use crate::electric;
 use crate::element::Element;
-use crate::profile::Profile;
 use crate::quadrature::gauss;
 use crate::real::{Pair, Real, Sum};
 use crate::scene::Model;
@@ -54,15 +54,11 @@ impl<T: Real> Distance<T> {
             size.add(part.bend().times(stiffness.times(part.bend())));
             // Without conduction into the potential that is what Gauss's rule misses of coefficients and loads.
             if electric::present::<T, M>() {
-                let beam = fine.scene().beam();
                 for (z, weight) in gauss::<5>() {
-                    let (z, x) = (T::of(z), place.element.x(T::of(z)));
-                    let (u, q) = part.gradients(z);
-                    let (u_whole, q_whole) = whole.gradients(right + share * z);
-                    let (u, q) = (u - u_whole, q - q_whole);
-                    let axial = beam.axial.value(x, part.mid);
-                    let permittivity = beam.permittivity.value(x, part.mid);
-                    electric.add(T::of(weight) * h * (axial * u * u + permittivity * q * q));
+                    let z = T::of(z);
+                    let ((u, q), (u_whole, q_whole)) =
+                        (part.gradients(z), whole.gradients(right + share * z));
+                    electric.add(T::of(weight) * h * density(&part, z, (u - u_whole, q - q_whole)));
                 }
             }
             let (a, b) = (whole.fields(x), part.fields(x));

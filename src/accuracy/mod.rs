@@ -108,16 +108,11 @@ impl<T: Real, M: Model<T>> Solution<'_, T, M> {
             }
             left = whole.element.right;
         }
-        if self.rigid {
-            for place in places.iter_mut() {
-                place.element.soften(scene.foundation().law);
-            }
-        }
         let (mut elements, mut visits, mut pass) = (needed, 0, 1);
         let mut last = None;
         loop {
             let places = storage::first(memory, elements);
-            let mut answer = nested::sharpen(scene, places, T::one(), settings);
+            let mut answer = nested::sharpen(scene, places, self.rigid, T::one(), settings);
             visits += answer.report.element_visits;
             answer.report.element_visits = visits;
             let imbalance = bound::imbalance(scene, places, &answer);
@@ -166,15 +161,14 @@ impl<T: Real> Certificate<T> {
             // What rounding leaves of both solutions is in neither's difference to the other.
             T::of(4.0) * T::epsilon() + if error == T::zero() { error } else { error / size }
         };
-        let present = |present: bool, number: T| present.then_some(number);
         Self {
             bending_bound: bounds.and_then(|b| relative(distance.bending, b.bending, b.bending_size)),
             electric_bound: bounds
                 .filter(|_| crate::electric::present::<T, M>())
                 .and_then(|b| relative(distance.electric, b.electric, b.electric_size)),
             bending_estimate: estimate(distance.fields[0]),
-            stretching_estimate: present(M::Axial::PRESENT, estimate(distance.fields[1])),
-            potential_estimate: present(M::Permittivity::PRESENT, estimate(distance.fields[2])),
+            stretching_estimate: M::Axial::PRESENT.then(|| estimate(distance.fields[1])),
+            potential_estimate: M::Permittivity::PRESENT.then(|| estimate(distance.fields[2])),
             report,
         }
     }

@@ -1,9 +1,9 @@
 //! What each element adds to the error of bending.
 //!
-//! Nodal values of bending are exact but for three things: the contact force inside an element follows its cubic and not
-//! the solution; the stiffness varies inside it; Gauss's rule misses a load that is no polynomial, or the force of a curved
-//! law at its edge. Each is a small force or kink. How far a force here moves the beam anywhere follows from how far the beam yields here to a uniform
-//! load (Maxwell and Betti).
+//! Nodal values of bending are exact but for three things: the contact force inside an element follows its cubic and
+//! not the solution; the stiffness varies inside it; Gauss's rule misses a load that is no polynomial, or the force of a
+//! curved law at its edge. Each is a small force or kink. How far a force here moves the beam anywhere follows from how
+//! far the beam yields here to a uniform load (Maxwell and Betti).
 
 use crate::element::contact::parts;
 use crate::element::hermite::Motion;
@@ -40,9 +40,7 @@ impl<T: Real> Share<T> {
         let fits = |n: &usize| self.divided(*n) <= most * T::from(*n).unwrap_or(T::one());
         (1..MOST_PARTS).find(fits).unwrap_or(MOST_PARTS)
     }
-}
 
-impl<T: Real> Share<T> {
     /// That of one element for two neighbours.
     pub(super) fn joined(&self, other: &Self) -> Self {
         let sixteen = T::of(16.0);
@@ -56,7 +54,7 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
         let (element, h) = (self.element, self.element.h);
         let length = self.scene.length();
         let points = [0.0, 0.125, 0.25, 0.5, 0.75, 0.875, 1.0].map(T::of);
-        let c = T::of(0.25) * element.bending.yy * h;
+        let c = element.stiffness();
         // The foundation's tangent stiffness, and what the cubic leaves of the load.
         let (mut stiffness, mut open) = (T::zero(), T::zero());
         for t in points {

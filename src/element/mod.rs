@@ -14,7 +14,7 @@ use crate::law::Compliance;
 use crate::profile::{Piece, Profile, Slot, Smooth};
 use crate::quadrature::{POINTS, gauss};
 use crate::real::{Pair, Real};
-use crate::scene::Model;
+use crate::scene::{Model, points_at};
 use crate::sweep::pair::Symmetric;
 use hermite::Motion;
 use linear::{AxialLoad, Flexibility};
@@ -118,10 +118,7 @@ impl<T: Real, M: Model<T>> Element<T, M> {
         expect(fits, "beam.bending", Place::At(mid.f64()), what, stiffness[0])?;
         let transverse = span.samples("load.transverse", |x| load.transverse.value(x, mid))?;
         let (fe, mut fr) = hermite::loads(h, transverse);
-        // Points within rounding of a node are its own (as `next_break` has it).
-        let tiny = T::of(16.0) * T::epsilon() * model.length();
-        let first = load.points.partition_point(|point| right - point.x > tiny);
-        for point in load.points[first..].iter().take_while(|point| point.x - right <= tiny) {
+        for point in points_at(model, right) {
             fr += T::Vec2::of(point.force, point.moment);
         }
         let law = span.samples("foundation.stiffness", |x| foundation.law.coefficient(x, mid))?;

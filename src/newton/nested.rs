@@ -291,9 +291,7 @@ pub(crate) fn solve<T: Real, M: Model<T>>(
     }
     count.most_visits = most;
     for &(start, len) in levels {
-        for place in places.iter_mut().skip(start).take(len) {
-            place.element.soften(law);
-        }
+        soften(model, places.get_mut(start..start + len).unwrap_or_default());
     }
     let answer = descend(model, places, levels, settings, &mut count)?;
     Ok(Answer { rigid: true, ..answer })
@@ -352,14 +350,19 @@ fn descend<T: Real, M: Model<T>>(
     Err(Error::Capacity { needed: 1, available: 0 })
 }
 
-/// Solves on a mesh whose elements are in the state of a coarser one, and polishes what is left to so many `units` in
-/// the last place.
+/// Solves on a mesh whose elements are in the state of a coarser one, whose foundation was taken as `rigid` or not, and
+/// polishes what is left to so many `units` in the last place.
 pub(crate) fn sharpen<T: Real, M: Model<T>>(
     model: &M,
     places: &mut [Place<T, M>],
+    rigid: bool,
     units: T,
     settings: &Settings<T>,
 ) -> Answer<T, M> {
+    if rigid {
+        // What is rigid to an element is so to smaller ones when it is stiffer.
+        soften(model, places);
+    }
     let mut count = budget(settings, places.len());
     let context = context(model, places, settings.stop);
     let mut level = Level::new(&context, places);
@@ -374,7 +377,14 @@ pub(crate) fn sharpen<T: Real, M: Model<T>>(
     if outcome == Ok(Outcome::Converged) {
         outcome = level.refine(units, &mut count).map(|()| Outcome::Converged);
     }
-    level.answer(outcome, settings.stop, &count)
+    Answer { rigid, ..level.answer(outcome, settings.stop, &count) }
+}
+
+/// Takes the foundation for one that is at most as stiff as is rigid to each element.
+fn soften<T: Real, M: Model<T>>(model: &M, places: &mut [Place<T, M>]) {
+    for place in places {
+        place.element.soften(model.foundation().law);
+    }
 }
 
 /// How far each node moves under a uniform load, the contact as it is: the step goes into the spare state of each
