@@ -1,11 +1,12 @@
-//! Times of whole solves from nothing, of a step of a `History`, and of what is done before and after a solve.
+//! Processor times of whole solves from nothing, of a step of a `History`, and of what is done before and after a solve.
 #![allow(missing_docs, reason = "criterion's macros write functions without any")]
 #![allow(clippy::expect_used, reason = "a benchmark of a scene that is refused has nothing to measure")]
 
 mod scenes;
 
-use criterion::measurement::WallTime;
-use criterion::{BenchmarkGroup, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use cpu_time::ThreadTime;
+use criterion::measurement::{Measurement, ValueFormatter, WallTime};
+use criterion::{BenchmarkGroup, BenchmarkId, Throughput, criterion_group, criterion_main};
 use piezobeam::{HeapWorkspace, History, Mesh, Model, Output, Parameter, Problem, Real, Settings, Status};
 use scenes::Visit;
 use std::hint::black_box;
@@ -13,7 +14,40 @@ use std::time::Duration;
 
 const SIZES: [usize; 3] = [100, 1000, 10_000];
 
-type Group<'a> = BenchmarkGroup<'a, WallTime>;
+type Criterion = criterion::Criterion<Processor>;
+type Group<'a> = BenchmarkGroup<'a, Processor>;
+
+/// Time of this thread on its processor: other programs may share the machine.
+struct Processor;
+
+impl Measurement for Processor {
+    type Intermediate = ThreadTime;
+    type Value = Duration;
+
+    fn start(&self) -> ThreadTime {
+        ThreadTime::now()
+    }
+
+    fn end(&self, start: ThreadTime) -> Duration {
+        start.elapsed()
+    }
+
+    fn add(&self, a: &Duration, b: &Duration) -> Duration {
+        *a + *b
+    }
+
+    fn zero(&self) -> Duration {
+        Duration::ZERO
+    }
+
+    fn to_f64(&self, value: &Duration) -> f64 {
+        WallTime.to_f64(value)
+    }
+
+    fn formatter(&self) -> &dyn ValueFormatter {
+        WallTime.formatter()
+    }
+}
 
 /// A group whose times settle quickly: solves have no noise of their own.
 fn group<'a>(criterion: &'a mut Criterion, name: &str) -> Group<'a> {
@@ -119,5 +153,9 @@ impl Visit<f64> for Around<'_> {
     }
 }
 
-criterion_group!(benches, double, single, step, around);
+criterion_group! {
+    name = benches;
+    config = criterion::Criterion::default().with_measurement(Processor);
+    targets = double, single, step, around
+}
 criterion_main!(benches);

@@ -2,8 +2,9 @@
 #
 # usage: cargo bench --bench solve -- <filter> | awk -f benches/table.awk
 BEGIN { us["ns"] = 1e-3; us["µs"] = us["us"] = 1; us["ms"] = 1e3; us["s"] = 1e6 }
-/time:/ {
-    # Of a long name only the line before has it: name, "time:", "[", low, median, high.
+# Not the comparison with an earlier run, which is in per cent.
+/time:/ && !/%/ {
+    # name, "time:", "[", low, median, high; a long name stands in the line before.
     sub(/ *time: */, "/ ")
     name = $0; sub(/\/ \[.*/, "", name); if (name == "") name = before
     sub(/.*\[/, ""); sub(/\]/, "")

@@ -145,8 +145,8 @@ impl<C: Cholesky> Peer<C> {
             if !self.bend(&mut end.steps).unwrap_or(false) {
                 break;
             }
-            let settled = self.conduct();
-            if settled && distance(&before, &self.eta, 2) <= STOP {
+            let stayed = self.conduct();
+            if stayed && settled(&before, &self.eta, 2) {
                 end.converged = true;
                 break;
             }
@@ -166,9 +166,9 @@ impl<C: Cholesky> Peer<C> {
             let room = self.values.len() - 1;
             self.bending.factor(&self.values[..room])?;
             self.bending.solve(&mut self.side[inner.clone()]);
-            let moved = distance(&self.eta[inner.clone()], &self.side[inner.clone()], 2);
+            let done = settled(&self.eta[inner.clone()], &self.side[inner.clone()], 2);
             self.eta[inner.clone()].copy_from_slice(&self.side[inner.clone()]);
-            if moved <= STOP {
+            if done {
                 return Ok(true);
             }
         }
@@ -244,19 +244,15 @@ impl<C: Cholesky> Peer<C> {
         self.laplace.solve(sides);
         let (u, q) = sides.split_at_mut(n);
         q.iter_mut().for_each(|q| *q += POTENTIAL);
-        let stayed = distance(&self.u[1..=n], u, 1) <= STOP && distance(&self.q[1..=n], q, 1) <= STOP;
+        let stayed = settled(&self.u[1..=n], u, 1) && settled(&self.q[1..=n], q, 1);
         self.u[1..=n].copy_from_slice(u);
         self.q[1..=n].copy_from_slice(q);
         stayed
     }
 }
 
-/// Largest difference of every `stride`th entry, over the largest of the new ones.
-fn distance(old: &[f64], new: &[f64], stride: usize) -> f64 {
-    let (mut move_, mut size) = (0.0_f64, f64::MIN_POSITIVE);
-    for (a, b) in old.iter().zip(new).step_by(stride) {
-        move_ = move_.max((a - b).abs());
-        size = size.max(b.abs());
-    }
-    move_ / size
+/// Has every `stride`th entry moved by no more than the largest of them times [`STOP`]? What is no number has moved.
+fn settled(old: &[f64], new: &[f64], stride: usize) -> bool {
+    let size = new.iter().step_by(stride).fold(0.0, |most: f64, b| most.max(b.abs()));
+    old.iter().zip(new).step_by(stride).all(|(a, b)| (a - b).abs() <= STOP * size)
 }
