@@ -21,7 +21,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     } else {
         scenes::each_and_rigid(&mut asked);
     }
-    asked.outcome.ok_or(format!("no scene {name}"))??;
+    asked
+        .outcome
+        .ok_or_else(|| format!("no scene {name}: there are those of benches/scenes/mod.rs, and step"))??;
     Ok(())
 }
 
