@@ -70,6 +70,7 @@ impl<T: Real> Residual<T> {
         Self { mismatch: T::zero(), size: T::zero(), load: T::zero(), sum: T::zero() }
     }
 
+    #[cfg(feature = "alloc")]
     pub(crate) fn of(mismatch: T, size: T, load: T, sum: T) -> Self {
         Self { mismatch, size, load, sum }
     }

@@ -297,12 +297,14 @@ fn upper<T: Field, B: Block<T>>(element: &Stamp<T, B>, h: T) -> B::Matrix {
 
 impl<T: Field, B: Block<T>> Factor<T, B> {
     /// From its parts, as [`Factor::parts`] gives them.
+    #[cfg(feature = "alloc")]
     #[inline(always)]
     pub(crate) fn of((gain, constant, nodal): (B::Matrix, B::Vector, bool)) -> Self {
         Self { gain, constant, nodal }
     }
 
     /// Its parts, for who stores them apart.
+    #[cfg(feature = "alloc")]
     #[inline(always)]
     pub(crate) fn parts(self) -> (B::Matrix, B::Vector, bool) {
         (self.gain, self.constant, self.nodal)
