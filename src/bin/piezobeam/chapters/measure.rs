@@ -222,13 +222,14 @@ pub struct Measured {
     pub errors: Field,
 }
 
-/// What `how` finds on meshes of these sizes, until one solve takes more than `most` seconds.
+/// What `how` finds on meshes of these sizes, each timed for `budget` seconds, up to the first with more than `most`
+/// element visits: a bound in seconds would be another one in each run.
 pub fn measure<T: Number>(
     numbers: &Numbers,
     how: How,
     sizes: &[Size],
     reference: &[Field],
-    (budget, most): (f64, f64),
+    (budget, most): (f64, usize),
 ) -> Result<Vec<Measured>, Error> {
     let given = numbers.in_precision::<T>();
     let scene = given.scene();
@@ -236,12 +237,11 @@ pub fn measure<T: Number>(
     let mut all = Vec::new();
     let at = points();
     for &size in sizes {
-        let begun = Instant::now();
         let found = bench.find(how, size, &at)?;
-        let first = begun.elapsed().as_secs_f64();
-        let times = bench.time(how, size, budget.min(20.0 * first).max(0.1 * budget))?;
+        let visits = found.visits;
+        let times = bench.time(how, size, budget)?;
         all.push(Measured { errors: errors(&found.fields, reference), times, found });
-        if first > most {
+        if visits > most {
             break;
         }
     }

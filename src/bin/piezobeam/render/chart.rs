@@ -164,7 +164,9 @@ pub fn wrapped(text: &str, width: usize) -> Vec<String> {
 
 /// `text` as it is printed: minus signs, and small whole powers raised.
 pub fn typeset(text: &str) -> String {
-    let minus = text.replace(" -", " −").replace("e-", "e−").replace("[-", "[−");
+    let exponent = |minus: String, digit: char| minus.replace(&format!("{digit}e-"), &format!("{digit}e−"));
+    let minus = text.replace(" -", " −").replace("[-", "[−");
+    let minus = ('0'..='9').fold(minus, exponent);
     let minus = minus.strip_prefix('-').map_or(minus.clone(), |rest| format!("−{rest}"));
     let mut out = String::new();
     let mut parts = minus.split('^');
@@ -440,6 +442,7 @@ mod tests {
         assert_eq!(typeset("-1e-5 N m^2/V^2"), "−1e−5 N m²/V²");
         assert_eq!(typeset("1e8 N/m^2.5, -2 x^10 + x^3"), "1e8 N/m^2.5, −2 x^10 + x³");
         assert_eq!(typeset("x^"), "x^");
+        assert_eq!(typeset("re-entrant, 3e-4"), "re-entrant, 3e−4");
         assert_eq!(typeset("N/m^2. And m^3..."), "N/m². And m³...");
         assert_eq!(scientific("from 1e8 N/m^2 to 2.5e-12, -1e-3"), "from 10⁸ N/m² to 2.5·10⁻¹², −10⁻³");
         assert_eq!(scientific("the 3 elements, 4e, x1 e5, ξ = 1e0 m"), "the 3 elements, 4e, x1 e5, ξ = 1 m");

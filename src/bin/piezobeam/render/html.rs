@@ -21,7 +21,7 @@ p, ul { max-width: 46rem } a { color: inherit } code { font-size: .92em }
 .faint, figcaption, .caption { color: var(--faint) } figcaption, .caption { font-size: .9rem }
 .caption { margin: 1.5rem 0 0; max-width: none }
 .figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 440px), 1fr)); gap: 1.2rem }
-figure { margin: 0; min-width: 0; max-width: 640px } figure svg { width: 100%; height: auto; display: block }
+figure { margin: 0; min-width: 0; max-width: 580px } figure svg { width: 100%; height: auto; display: block }
 .scroll { overflow-x: auto; margin: .3rem 0 1rem }
 table { border-collapse: collapse; font-size: .92rem; font-variant-numeric: tabular-nums }
 th, td { padding: .25rem .7rem; border-bottom: 1px solid var(--line); text-align: right; white-space: nowrap }
@@ -88,7 +88,9 @@ fn section(section: &Section) -> Markup {
     html! {
         h3 { (section.title) }
         @for paragraph in &section.text { p { (rich(paragraph)) } }
-        div.figures { @for figure in &section.figures { (self::figure(figure)) } }
+        @if !section.figures.is_empty() {
+            div.figures { @for figure in &section.figures { (self::figure(figure)) } }
+        }
         @for table in &section.tables { (self::table(table)) }
     }
 }

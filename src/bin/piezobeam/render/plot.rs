@@ -193,16 +193,26 @@ impl Range {
     }
 
     fn decades(low: f64, high: f64, unit: &str) -> Self {
-        let (first, last) = ((low - 0.1).floor(), (high + 0.1).ceil());
+        let (first, last) = ((low + 1e-9).floor(), (high - 1e-9).ceil().max((low + 1e-9).floor() + 1.0));
         let step = [1.0, 2.0, 3.0, 4.0, 6.0, 10.0, 20.0, 30.0, 50.0, 60.0, 100.0, 200.0];
-        let step = step.into_iter().find(|step| (last - first) / step <= 7.0).unwrap_or(300.0);
+        // Times are wider than powers of ten.
+        let most = if unit == "s" { 5.0 } else { 7.0 };
+        let step = step.into_iter().find(|step| (last - first) / step <= most).unwrap_or(300.0);
         let name = |decade: f64| match unit {
             "s" => super::quantity(10f64.powf(decade), "s", 1),
             _ => power_of_ten(decade as i32),
         };
         let whole = ((first / step).ceil() as i64..=(last / step).floor() as i64).map(|i| i as f64 * step);
         let ticks = whole.map(|decade| (decade, name(decade))).collect();
-        Self { low: first, high: last, floor: 0.0, scale: Scale::new(1.0, ""), logarithmic: true, ticks }
+        let margin = 0.02 * (last - first);
+        Self {
+            low: first - margin,
+            high: last + margin,
+            floor: 0.0,
+            scale: Scale::new(1.0, ""),
+            logarithmic: true,
+            ticks,
+        }
     }
 
     /// Where a value is, from 0 to 1; below and above it is cut off a little outside.
