@@ -72,7 +72,7 @@ fn study(effort: &Effort, numbers: &Numbers) -> Result<Studied, Box<dyn Error>> 
             .iter()
             .map(|&how| {
                 let sizes = sizes(effort, how, double);
-                let most = effort.pick((1e-3, 60_000), (0.1, 20_000_000));
+                let most = effort.pick((1e-3, 60_000), (0.1, 5_000_000));
                 let found = match double {
                     true => measure::<f64>(numbers, how, &sizes, &reference, most),
                     false => measure::<f32>(numbers, how, &sizes, &reference, most),

@@ -140,10 +140,10 @@ pub fn panel(area: &Area, picture: &Picture, field: &Field, note: &str) -> Drawn
 /// How wrong the bending may be, where that is known.
 fn errors(report: &Report) -> String {
     let Some(estimate) = report.error_estimate else { return String::new() };
-    let bound = report.error_bound.map_or(", not guaranteed".into(), |bound| {
-        format!(", guaranteed below {} in the energy norm", significant(bound, 2))
-    });
-    format!("; error of bending about {}{bound}", significant(estimate, 2))
+    let bound = report
+        .error_bound
+        .map_or(", no bound".into(), |bound| format!(", bound {} in the energy norm", significant(bound, 2)));
+    format!("; error about {}{bound}", significant(estimate, 2))
 }
 
 /// The numbers that matter: the largest deflection and where, contact.
@@ -243,7 +243,7 @@ mod tests {
             &picture,
             &[
                 "half pushed, half pulled",
-                "converged, 7 iterations, 100 elements, residual 3.2e−13",
+                "converged, 7 iterations, 100 elements, residual 3.2e−13; error about 1.2e−8, bound 0.00029 in the energy norm",
                 "Largest deflection",
                 "Contact force",
                 "In contact, 31.9 % of the length",
