@@ -1,5 +1,5 @@
-//! A control loop: an actuator in the middle of the beam holds the contact force at 300 kN while another force on it comes
-//! and goes. Each solve starts from the last solution.
+//! A control loop: an actuator in the middle of the beam holds the contact force at 300 kN while another force on it
+//! comes and goes. Each solve starts from the last solution.
 
 use piezobeam::{
     Beam, Error, Foundation, HeapWorkspace, History, Linear, Load, Mesh, PointLoad, Problem, Scene, Settings,

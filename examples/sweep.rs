@@ -1,5 +1,5 @@
-//! A sweep over the foundation's stiffness by the library, on all cores: each thread has a memory of its own. The command
-//! line's `sweep` does it for any number of a scene file.
+//! A sweep over the foundation's stiffness by the library, on all cores: each thread has a memory of its own. The
+//! command line's `sweep` does it for any number of a scene file.
 
 use piezobeam::{
     Beam, Error, Foundation, HeapWorkspace, Linear, Load, Mesh, Problem, Scene, Settings, Status, Steps,

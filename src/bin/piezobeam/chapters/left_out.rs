@@ -65,8 +65,8 @@ pub fn chapter(effort: &Effort) -> Result<Chapter, Box<dyn std::error::Error>> {
         by: OURS,
         said: "what a scene lacks takes no memory and no time",
         found: format!(
-            "bending alone takes {} of the {} bytes per element of the whole scene, and {} times less time on {ELEMENTS} \
-             elements",
+            "bending alone takes {} of the {} bytes per element of the whole scene, and {} times less time on \
+             {ELEMENTS} elements",
             first.bytes,
             last.bytes,
             significant(at(last) / at(first), 2)
@@ -98,8 +98,9 @@ pub fn chapter(effort: &Effort) -> Result<Chapter, Box<dyn std::error::Error>> {
     let section = Section {
         title: "Time, memory, work".into(),
         text: vec![
-            "Partial contact. One-way: the penetration drives a current, the potential does not act on bending. Bytes are \
-             those of the workspace. Instructions are not counted here; `benches/left_out.sh` counts them exactly."
+            "Partial contact. One-way: the penetration drives a current, the potential does not act on bending. \
+             Bytes are those of the workspace. Instructions are not counted here; `benches/left_out.sh` counts them \
+             exactly."
                 .into(),
         ],
         figures: vec![
@@ -117,8 +118,8 @@ pub fn chapter(effort: &Effort) -> Result<Chapter, Box<dyn std::error::Error>> {
         tables: vec![table],
     };
     let introduction = vec![
-        "The parts of a scene are types: a part that is not there is not compiled. Five programs in one, each as if the \
-         others were not."
+        "The parts of a scene are types: a part that is not there is not compiled. Five programs in one, each as if \
+         the others were not."
             .into(),
     ];
     Ok(Chapter {
@@ -140,14 +141,11 @@ fn figure(all: &[Costs], name: &str, title: &str, y: Axis, get: fn(&Run) -> f64)
         });
         Curve::new(costs.name, look, points.collect())
     });
-    let mut curves: Vec<_> = curves.collect();
-    // Axes of work begin at nothing.
-    curves.iter_mut().for_each(|curve| curve.points.sort_by(|a, b| a.x.total_cmp(&b.x)));
     let x = Axis::logarithmic("elements", "", "elements");
     Figure {
         name: name.into(),
         caption: format!("{title} of the mesh, a solve from nothing."),
-        plot: Plot { title: title.into(), x, y, curves },
+        plot: Plot { title: title.into(), x, y, curves: curves.collect() },
     }
 }
 

@@ -257,8 +257,8 @@ pub fn machine() -> String {
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     format!(
         "piezobeam {}, {}, {} {}, {cores} cores, one of them used. Times are the best of many solves from nothing; \
-         sampling the scene and laying out the mesh are part of them, allocation is not. The line to the right of a mark \
-         ends where three solves in four had ended.",
+         sampling the scene and laying out the mesh are part of them, allocation is not. The line to the right of a \
+         mark ends where three solves in four had ended.",
         env!("CARGO_PKG_VERSION"),
         model.as_deref().unwrap_or("a processor that does not say its name"),
         std::env::consts::ARCH,

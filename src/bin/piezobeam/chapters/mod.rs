@@ -1,7 +1,7 @@
 //! The report: what the project claims and what it found, computed anew, a chapter for each subject.
 //!
-//! A chapter solves scenes, compares what they come to with what is said of them, and says whether that holds. It is plain
-//! data: `render::html` makes the page of it.
+//! A chapter solves scenes, compares what they come to with what is said of them, and says whether that holds. It is
+//! plain data: `render::html` makes the page of it.
 
 mod left_out;
 mod measure;
@@ -126,8 +126,8 @@ pub fn run(quick: bool, bar: &ProgressBar) -> Result<Document, Box<dyn Error>> {
     ];
     let option = if quick { " --quick" } else { "" };
     let introduction = format!(
-        "What the solver costs and what it gives for it, beside the methods of the paper: Rodríguez-Arós, Cao-Rial and \
-         Sofonea, A piezoelectric elastic beam model with normal compliance contact. Everything on this page was \
+        "What the solver costs and what it gives for it, beside the methods of the paper: Rodríguez-Arós, Cao-Rial \
+         and Sofonea, A piezoelectric elastic beam model with normal compliance contact. Everything on this page was \
          computed by `piezobeam report{option}`; each picture's numbers are in the CSV file named below it."
     );
     Ok(Document { introduction, made: measure::machine(), chapters })
@@ -176,8 +176,8 @@ impl Document {
         };
         let (well, artefacts, failed) = (count(true, false), count(true, true), count(false, false));
         format!(
-            "Of {} things that the paper or this project says and that are checked below, {well} hold, {artefacts} are \
-             artefacts of how they were measured, {failed} do not hold in this run.",
+            "Of {} things that the paper or this project says and that are checked below, {well} hold, {artefacts} \
+             are artefacts of how they were measured, {failed} do not hold in this run.",
             self.claims().count()
         )
     }

@@ -42,8 +42,8 @@ pub fn chapter(effort: &Effort) -> Result<Chapter, Box<dyn Error>> {
     let (convergence, orders) = convergence()?;
     effort.step();
     let introduction = vec![format!(
-        "Its example on {ELEMENTS} elements where nothing else is said, and the same with the load turned round on the \
-         right half, which lifts the beam off. What the paper does not print is assumed: {ASSUMED}"
+        "Its example on {ELEMENTS} elements where nothing else is said, and the same with the load turned round on \
+         the right half, which lifts the beam off. What the paper does not print is assumed: {ASSUMED}"
     )];
     let claims = falls.into_iter().chain(counted).chain([quiet]).chain(orders).collect();
     let sections = vec![fields, penetration, iterations, worth, convergence];
@@ -95,8 +95,8 @@ fn fields() -> Result<Section, Box<dyn Error>> {
         ),
         figure(
             "fig2-stretching",
-            "Fig. 2: stretching; the same in both scenes to the width of the line. 1.1 m in a beam of 1 m: the paper's data \
-             are not those of a real beam.",
+            "Fig. 2: stretching; the same in both scenes to the width of the line. 1.1 m in a beam of 1 m: the \
+             paper's data are not those of a real beam.",
             "Fig. 2: stretching",
             along(),
             Axis::linear("stretching u", "m", "stretching"),
@@ -185,9 +185,9 @@ fn penetration(effort: &Effort) -> Result<(Section, Vec<Claim>), Box<dyn Error>>
     };
     let depths = Figure {
         name: "fig5-penetration".into(),
-        caption: "The deepest penetration against k, by both of the paper's methods and by this solver. Without gap and \
-                  with all of the beam in contact they agree, but for Bermúdez-Moreno's where it ran out of iterations \
-                  (hollow)."
+        caption: "The deepest penetration against k, by both of the paper's methods and by this solver. Without gap \
+                  and with all of the beam in contact they agree, but for Bermúdez-Moreno's where it ran out of \
+                  iterations (hollow)."
             .into(),
         plot: Plot {
             title: "Deepest penetration".into(),
@@ -250,9 +250,9 @@ fn iterations(effort: &Effort) -> Result<(Section, [Claim; 2]), Box<dyn Error>> 
             by: PAPER,
             said: "Newton's method needs about ten iterations at any tolerance",
             found: format!(
-                "at most {newton} in full contact at k = 1e8. But with partial contact at k = 1e16 a cold start creeps: \
-                 {creeping} iterations where contact is decided at points; and where it is decided by elements, the \
-                 {quick} iterations end at a state in which the foundation pulls the beam"
+                "at most {newton} in full contact at k = 1e8. But with partial contact at k = 1e16 a cold start \
+                 creeps: {creeping} iterations where contact is decided at points; and where it is decided by \
+                 elements, the {quick} iterations end at a state in which the foundation pulls the beam"
             ),
             artefact: true,
             holds: newton <= 10.0 && creeping > 50.0 && partial[5].points.iter().all(|p| p.hollow),
@@ -282,8 +282,8 @@ fn iterations(effort: &Effort) -> Result<(Section, [Claim; 2]), Box<dyn Error>> 
     let section = Section {
         title: "Fig. 6: iterations and the stopping tolerance".into(),
         text: vec![
-            "Numbers behind the names are k in N/m^2. Iterations of this solver are those on all of its meshes together, \
-             most of them on coarse ones."
+            "Numbers behind the names are k in N/m^2. Iterations of this solver are those on all of its meshes \
+             together, most of them on coarse ones."
                 .into(),
         ],
         figures: vec![
@@ -384,8 +384,9 @@ fn convergence() -> Result<(Section, [Claim; 2]), Box<dyn Error>> {
         by: PAPER,
         said: "u and q converge linearly",
         found: format!(
-            "that is what slopes of the piecewise linear u and q do: orders {} and {}. The functions themselves are of \
-             order {} and {}. What this solver gives anywhere in the beam is off by {} at most, and by {} from h = 1e-2 on",
+            "that is what slopes of the piecewise linear u and q do: orders {} and {}. The functions themselves are \
+             of order {} and {}. What this solver gives anywhere in the beam is off by {} at most, and by {} from h \
+             = 1e-2 on",
             significant(u.slope, 3),
             significant(q.slope, 3),
             significant(u.linear, 3),
@@ -405,9 +406,9 @@ fn convergence() -> Result<(Section, [Claim; 2]), Box<dyn Error>> {
     let section = Section {
         title: "Figs. 7 to 9: errors against h".into(),
         text: vec![
-            "In full contact no element has an edge of contact in it, so that the active set by elements is the exact \
-             one. The naive recursion eliminates nodal values, as the paper's (3.8) reads; the conduction term, 1e-8 of \
-             the contact force, is left out of it."
+            "In full contact no element has an edge of contact in it, so that the active set by elements is the \
+             exact one. The naive recursion eliminates nodal values, as the paper's (3.8) reads; the conduction \
+             term, 1e-8 of the contact force, is left out of it."
                 .into(),
         ],
         figures,
@@ -450,15 +451,16 @@ fn bending_errors(at: &[f64]) -> Result<(Figure, Claim), Box<dyn Error>> {
         by: PAPER,
         said: "xi converges slower, against a reference computed at h = 1e-4",
         found: format!(
-            "bending is of order {}. A reference at h = 1e-4 by the recursion in nodal values is itself off by {}, so that \
-             errors against it do not fall below that: order {} from h = 1e-2 on",
+            "bending is of order {}. A reference at h = 1e-4 by the recursion in nodal values is itself off by {}, \
+             so that errors against it do not fall below that: order {} from h = 1e-2 on",
             significant(ours, 3),
             rough(off),
             significant(theirs, 2)
         ),
         artefact: true,
         holds: ours > 3.7 && theirs < 1.0 && off > 1e-7,
-        assumes: "The paper does not say how its systems are solved; that they are eliminated node by node is assumed.",
+        assumes: "The paper does not say how its systems are solved; that they are eliminated node by node is \
+                  assumed.",
     };
     let [first, second, third] = sets;
     let curves = vec![
@@ -468,8 +470,8 @@ fn bending_errors(at: &[f64]) -> Result<(Figure, Claim), Box<dyn Error>> {
     ];
     let figure = Figure {
         name: "fig7-bending".into(),
-        caption: "Fig. 7: error of bending at tenths of the beam; the first curve against the naive solution at h = 1e-4, \
-                  as the paper measures it, the others against the reference."
+        caption: "Fig. 7: error of bending at tenths of the beam; the first curve against the naive solution at h = \
+                  1e-4, as the paper measures it, the others against the reference."
             .into(),
         plot: over_h("Fig. 7: bending".into(), "bending", curves),
     };
@@ -532,8 +534,8 @@ fn linear_errors(
     let figure = Figure {
         name: format!("fig{number}-{name}"),
         caption: format!(
-            "Fig. {number}: error of {label}, of the function that is linear between nodes, of its slope, and of what this \
-             solver gives between nodes."
+            "Fig. {number}: error of {label}, of the function that is linear between nodes, of its slope, and of \
+             what this solver gives between nodes."
         ),
         plot: over_h(format!("Fig. {number}: {label}"), label, curves),
     };

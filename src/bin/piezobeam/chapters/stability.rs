@@ -17,8 +17,8 @@ pub const STEPS: u64 = 4;
 
 const C: f64 = 5000.0;
 const F: f64 = 1e6;
-/// Above this the bending is compared with the closed form of the rigid limit, from which it is off by some (C/k)^(3/4),
-/// 1e-10 of it at 1e20.
+/// Above this the bending is compared with the closed form of the rigid limit, from which it is off by some
+/// (C/k)^(3/4), 1e-10 of it at 1e20.
 const RIGID: f64 = 1e19;
 
 /// Computes the chapter.
@@ -92,8 +92,8 @@ fn rounding(effort: &Effort) -> Result<(Section, Claim), Box<dyn Error>> {
         by: OURS,
         said: "the recursion in nodal values loses all digits on fine meshes, the one in relative unknowns none",
         found: format!(
-            "in nodal values {} on 1e4 elements without contact and {} on 1e5; in relative unknowns {} at most, {} with \
-             contact, up to {:.0e} elements; in f32 {} up to 1e4 elements",
+            "in nodal values {} on 1e4 elements without contact and {} on 1e5; in relative unknowns {} at most, {} \
+             with contact, up to {:.0e} elements; in f32 {} up to 1e4 elements",
             rough(lost),
             rough(at(&naive_free, 1e5)),
             rough(worst),
@@ -134,8 +134,8 @@ fn rounding(effort: &Effort) -> Result<(Section, Claim), Box<dyn Error>> {
         ),
     ];
     let text = vec![
-        "A uniform load on a clamped beam, C = 5000 N m^2. The naive recursion subtracts numbers of size C/h^3 to get one \
-         of size C/x^3; in relative unknowns none of that size appears."
+        "A uniform load on a clamped beam, C = 5000 N m^2. The naive recursion subtracts numbers of size C/h^3 to \
+         get one of size C/x^3; in relative unknowns none of that size appears."
             .into(),
     ];
     let section = Section { title: "Rounding of the recursion".into(), text, figures, tables: Vec::new() };
@@ -186,7 +186,8 @@ fn stiffness(effort: &Effort) -> Result<(Section, Claim), Box<dyn Error>> {
         ),
         artefact: false,
         holds: all(&off[..1], 1e-4) && all(&off[1..], 1e-6) && most(&visits) <= 500.0,
-        assumes: "from 1e20 on compared with the closed form of the rigid limit, from which the bending is 1e-10 off there",
+        assumes: "from 1e20 on compared with the closed form of the rigid limit, from which the bending is 1e-10 off \
+                  there",
     };
     let mut figures = Vec::new();
     for (most, name, title) in [(1e20, "", "up to 1e20"), (f64::INFINITY, "-all", "up to 1e300")] {
@@ -214,8 +215,8 @@ fn stiffness(effort: &Effort) -> Result<(Section, Claim), Box<dyn Error>> {
         }
     }
     let text = vec![
-        "Partial contact. From 1e16 N/m^2 on the layer at the contact's edge, (C/k)^(1/4) wide, is thinner than these \
-         meshes' elements, and what is left is the mesh's own error."
+        "Partial contact. From 1e16 N/m^2 on the layer at the contact's edge, (C/k)^(1/4) wide, is thinner than \
+         these meshes' elements, and what is left is the mesh's own error."
             .into(),
     ];
     let section = Section { title: "Foundations of any stiffness".into(), text, figures, tables: Vec::new() };
@@ -253,7 +254,8 @@ fn single(effort: &Effort) -> Result<(Section, Claim), Box<dyn Error>> {
     };
     let figure = Figure {
         name: "single-precision".into(),
-        caption: "Partial contact, exact kinks on uniform meshes: errors of the three fields in f32, and of bending in f64."
+        caption: "Partial contact, exact kinks on uniform meshes: errors of the three fields in f32, and of bending \
+                  in f64."
             .into(),
         plot: Plot {
             title: "Single precision".into(),
@@ -306,8 +308,8 @@ fn table(effort: &Effort) -> (Section, Claim) {
     let mut tables = vec![Table {
         name: "extremes".into(),
         caption: format!(
-            "Scenes with extreme data and meshes, each held to what it should give: rows of `piezobeam extremes{}`, which \
-             lists them one by one.",
+            "Scenes with extreme data and meshes, each held to what it should give: rows of `piezobeam extremes{}`, \
+             which lists them one by one.",
             if effort.quick { " --quick" } else { "" }
         ),
         header: header(&["extreme", "rows", "ok", "refused", "wrong", "largest error, f64", "f32"]),
@@ -333,7 +335,8 @@ fn table(effort: &Effort) -> (Section, Claim) {
         by: OURS,
         said: "at the edges of what can be asked no wrong answer is called converged",
         found: format!(
-            "{quietly} of {} rows are; {} did not end as they should, by work, by their reference or by a status that says so",
+            "{quietly} of {} rows are; {} did not end as they should, by work, by their reference or by a status \
+             that says so",
             found.rows, found.wrong
         ),
         artefact: false,

@@ -203,9 +203,10 @@ fn costs(studied: &[Studied]) -> (Section, Claim) {
     names.push("gain over the paper");
     let table = Table {
         name: "time-to-error".into(),
-        caption: "Shortest time of a solve after which the error of bending is below a bound, on that mesh and on all finer \
-                  ones that were tried; the gain is over the faster one of the paper's two methods."
-            .into(),
+        caption:
+            "Shortest time of a solve after which the error of bending is below a bound, on that mesh and on \
+                  all finer ones that were tried; the gain is over the faster one of the paper's two methods."
+                .into(),
         header: header(&names),
         rows,
     };
@@ -296,9 +297,9 @@ fn against_elements(studied: &[Studied]) -> (Section, [Claim; 2]) {
     let table = Table {
         name: "orders".into(),
         caption: format!(
-            "Orders p of errors c / N^p on uniform meshes, fitted to errors from {:e} to {:e} on elements no longer than \
-             {RESOLVED} widths (C/k)^(1/4) of the layer at a contact's edge; a field without three of them, a decade \
-             apart, is left out: it is exact to rounding, or far from it.",
+            "Orders p of errors c / N^p on uniform meshes, fitted to errors from {:e} to {:e} on elements no longer \
+             than {RESOLVED} widths (C/k)^(1/4) of the layer at a contact's edge; a field without three of them, a \
+             decade apart, is left out: it is exact to rounding, or far from it.",
             FITTED.0, FITTED.1
         ),
         header: header(&names),
@@ -408,7 +409,8 @@ fn time_against_elements(studied: &[Studied]) -> (Section, Claim) {
             && most < 1.2
             && high < 1.6
             && studied.iter().all(|s| s.times.iter().all(|m| m.found.settled)),
-        assumes: "up to a million elements (40 000 in a quick run), of which the larger meshes no longer fit the caches",
+        assumes: "up to a million elements (40 000 in a quick run), of which the larger meshes no longer fit the \
+                  caches",
     };
     let figure = Figure {
         name: "time-against-elements-curves".into(),

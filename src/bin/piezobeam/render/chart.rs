@@ -54,8 +54,8 @@ const DARK: [(RGBColor, &str); 12] = [
     (BAND, "#2f6388"),
 ];
 
-/// What all pictures look like: a page that has one needs it once. Text carries an outline of the page's colour, so that
-/// a label crossed by a line stays readable.
+/// What all pictures look like: a page that has one needs it once. Text carries an outline of the page's colour, so
+/// that a label crossed by a line stays readable.
 pub fn style_sheet() -> String {
     format!(
         "svg text {{ paint-order: stroke; stroke: #fff; stroke-width: {}px; stroke-linejoin: round }} \
