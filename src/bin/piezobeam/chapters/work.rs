@@ -147,9 +147,9 @@ fn curves(sets: &Sets, point: impl Fn(&Measured) -> (f64, f64, f64)) -> Vec<Curv
     METHODS.iter().zip(sets).map(curve).collect()
 }
 
-/// Best time of an error of at most `goal` on a mesh and on all finer ones.
+/// Best time of an error of at most `goal` on a mesh and on all finer ones, whatever the solve says of itself.
 fn time_to(set: &[Measured], goal: f64) -> Option<f64> {
-    let good = |m: &&Measured| m.found.settled && m.errors[0] <= goal;
+    let good = |m: &&Measured| m.errors[0] <= goal;
     let fine = set.iter().rev().take_while(good);
     fine.map(|m| m.times.best).min_by(f64::total_cmp)
 }
@@ -204,8 +204,9 @@ fn costs(studied: &[Studied]) -> (Section, Claim) {
     let table = Table {
         name: "time-to-error".into(),
         caption:
-            "Shortest time of a solve after which the error of bending is below a bound, on that mesh and on \
-                  all finer ones that were tried; the gain is over the faster one of the paper's two methods."
+            "Shortest time of a solve after which the error of bending is below a bound, on that mesh and on all \
+                  finer ones that were tried, also where the solve says of itself that it is none; the gain is over \
+                  the faster one of the paper's two methods."
                 .into(),
         header: header(&names),
         rows,
