@@ -6,10 +6,9 @@
 mod common;
 
 use common::honest;
-use common::tolerances as tol;
 use piezobeam::{
     Beam, Conduction, Error, Foundation, HeapWorkspace, Linear, Load, Mesh, Model, Potential, Problem,
-    Profile, Real, Scene, Settings, Smooth, Solution, Status, Warning,
+    Profile, Real, Scene, Settings, Smooth, Status,
 };
 
 /// The places, by the names that errors call them, and numbers that suit each other.
@@ -94,7 +93,7 @@ fn judge<T: Real + Profile<T> + Smooth<T>>(with: &[(usize, T)], tally: &mut Tall
         }
         Ok(Ok(solution)) if solution.report().status == Status::Converged => {
             tally.converged += 1;
-            is_honest(&solution)
+            honest::check(&solution)
         }
         Ok(Ok(solution)) => {
             tally.others += 1;
@@ -118,19 +117,6 @@ fn is_named<T: Real>(error: Error, with: &[(usize, T)]) -> Result<(), String> {
         message.starts_with(PLACES[place].0) || (place == LENGTH && message.starts_with("beam.bending"))
     };
     if with.iter().any(|&(place, _)| named(place)) { Ok(()) } else { Err(message) }
-}
-
-/// Finite, in equilibrium, in one piece, and nowhere pulled by the foundation.
-fn is_honest<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Result<(), String> {
-    let report = solution.report();
-    let found = honest::departure(solution);
-    let allowed = tol::HONEST.max(tol::HONEST_RESIDUALS * report.residual.max(report.floor).f64());
-    // A foundation that was taken as rigid has another law than the scene's, and a warning.
-    let rigid = solution.warnings().iter().any(|w| matches!(w, Warning::Rigid { .. }));
-    let law = if rigid { 0.0 } else { found.law };
-    let worst = [found.moment, found.bending, found.flux, found.electric, law];
-    let ok = found.finite && found.tension <= 0.0 && worst.into_iter().all(|departure| departure <= allowed);
-    if ok { Ok(()) } else { Err(format!("{found:?}, {report:?}")) }
 }
 
 /// All scenes with special values in `at_once` places.
