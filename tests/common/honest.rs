@@ -131,10 +131,13 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
     let mut sizes = [moment.abs(), 0.0, 0.0, sigma.abs(), charge.abs(), 0.0, q.abs()];
     let mut worst = [0.0_f64; 7];
     let mut found = Departure::default();
-    let mut lost = 0.0;
+    let (mut lost, mut faint) = (0.0, 0.0);
     // The reaction is a difference of the first element's moments over its length.
-    let digits = 4.0 * T::epsilon().f64() + 2.0 * solution.report().residual.f64();
-    let mut drift = digits * moment.abs() / nodes[1];
+    let [deflected, bent] = nodes
+        .iter()
+        .map(|&x| at(x))
+        .fold([0.0_f64; 2], |[w, m], f| [w.max(f.bending.f64().abs()), m.max(f.moment.f64().abs())]);
+    let mut drift = 4.0 * (T::epsilon() + solution.report().residual).f64() * bent / nodes[1];
     // The field is a difference of potentials over the length.
     let ends = scene.potential().left.f64().abs() + scene.potential().right.f64().abs();
     let permittivity = beam.permittivity.value(number(0.0), number(nodes[1])).f64();
@@ -150,8 +153,7 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
     });
     let blur = blur.fold([0.0_f64; 2], |m, b| [m[0].max(b[0]), m[1].max(b[1])]);
     // Such bending is nothing but rounding.
-    let bent = nodes.iter().any(|&x| at(x).bending.f64().abs() > blur[0]);
-    resolved = resolved && (bent || blur[0] == 0.0);
+    resolved = resolved && (deflected > blur[0] || blur[0] == 0.0);
     let see = |worst: &mut f64, a: f64, b: f64, slack: f64| {
         let slack = slack + T::min_positive_value().f64() / T::epsilon().f64();
         let difference = (a - b).abs();
@@ -282,6 +284,8 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
                 // Below the normal numbers coefficients and fluxes have no digits.
                 let tiny = 16.0 * T::min_positive_value().f64() * T::epsilon().f64();
                 lost += span * tiny * (1.0 + s.size_q) / beam.axial.value(number(x), mid).f64();
+                // Nor has P / EA, which acts on q by the axial force.
+                faint += span * tiny * sigma.abs() / beam.permittivity.value(number(x), mid).f64();
                 du += weight * span * s.du;
                 dq += weight * span * s.dq;
                 sizes[1] += weight * span * curvature.abs() * length;
@@ -308,7 +312,7 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
         let field = at(b);
         see(&mut worst[1], w, field.bending.f64(), blur[0]);
         see(&mut worst[5], u, or(field.stretching), lost);
-        see(&mut worst[6], q, or(field.potential), 0.0);
+        see(&mut worst[6], q, or(field.potential), faint);
         for point in load.points.iter().filter(|p| (p.x.f64() - b).abs() <= 1e-14 * scene.length().f64()) {
             shear += point.force.f64();
             moment -= point.moment.f64();
@@ -331,7 +335,7 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
     see(&mut worst[1], w, 0.0, blur[0]);
     see(&mut worst[5], u, 0.0, lost);
     if M::Permittivity::PRESENT {
-        see(&mut worst[6], q, scene.potential().right.f64(), 0.0);
+        see(&mut worst[6], q, scene.potential().right.f64(), faint);
     }
     let relative = |i: usize| if worst[i] == 0.0 { 0.0 } else { worst[i] / sizes[i] };
     found.finite = finite.get();
