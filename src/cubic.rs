@@ -113,20 +113,22 @@ impl<T: Real> Cubic<T> {
     fn search(&self, level: T) -> ArrayVec<T, 3> {
         let mut roots = ArrayVec::new();
         let shifted = Cubic([self.0[0] - level, self.0[1], self.0[2], self.0[3]]);
-        let mut from = T::zero();
-        let mut from_value = shifted.at(from);
+        // A value that may be rounding has no sign, and what lies between two such is no part to integrate.
+        let noise = T::epsilon() * shifted.0.iter().fold(T::zero(), |sum, c| sum + c.abs());
+        let (mut from, mut before) = (T::zero(), shifted.at(T::zero()));
         for to in shifted.turning_points().into_iter().chain([T::one()]) {
-            let to_value = shifted.at(to);
-            if (from_value < T::zero()) != (to_value < T::zero())
-                && from_value.is_finite()
-                && to_value.is_finite()
-            {
-                let root = shifted.root_between(from, to, from_value < T::zero());
+            let value = shifted.at(to);
+            if value.abs() <= noise {
+                continue;
+            }
+            let changes = (before < T::zero()) != (value < T::zero()) && before.abs() > noise;
+            if changes && before.is_finite() && value.is_finite() {
+                let root = shifted.root_between(from, to, before < T::zero());
                 if root > T::zero() && root < T::one() {
                     let _ = roots.try_push(root);
                 }
             }
-            (from, from_value) = (to, to_value);
+            (from, before) = (to, value);
         }
         roots
     }
@@ -164,6 +166,9 @@ impl<T: Real> Cubic<T> {
 
     /// The root in [low, high], where the cubic is monotone and changes its sign.
     fn root_between(&self, mut low: T, mut high: T, rising: bool) -> T {
+        // Terms of one size cancel at a root: some units in the last place of their sum are all that a value can say.
+        let [c0, c1, c2, c3] = self.0.map(T::abs);
+        let noise = T::epsilon() * (c0 + high * (c1 + high * (c2 + high * c3)));
         let mut t = T::of(0.5) * (low + high);
         // Each step either halves the bracket or is Newton's and at least halves the last step, so that
         // twice the scalar's digits and range of exponents bound the count; 200 covers both scalars.
@@ -175,16 +180,15 @@ impl<T: Real> Cubic<T> {
             } else {
                 high = t;
             }
-            if value == T::zero() {
-                return t;
-            }
             let newton = t - value / self.slope(t);
             let step = (newton - t).abs();
-            let next = if newton > low && newton < high && step < T::of(0.5) * last_step {
-                newton
-            } else {
-                T::of(0.5) * (low + high)
-            };
+            let inside = newton > low && newton < high;
+            if value.abs() <= noise {
+                // One step more takes what is left of the digits.
+                return if inside { newton } else { t };
+            }
+            let next =
+                if inside && step < T::of(0.5) * last_step { newton } else { T::of(0.5) * (low + high) };
             last_step = (next - t).abs();
             if next == t || next <= low || next >= high {
                 return next;
