@@ -82,7 +82,7 @@ struct Input {
 }
 
 /// Visits that most scenes converge in on a few elements.
-const VISITS: usize = 1000;
+const VISITS: usize = 500;
 
 /// Numbers of the paper's scene.
 mod paper {
