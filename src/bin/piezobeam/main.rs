@@ -160,7 +160,7 @@ fn report(args: &ReportArgs) -> Outcome {
         output::make_directory(path.parent().unwrap_or(&args.out))?;
     }
     output::write_all(&files, args.force)?;
-    output::print(&format!("{summary}\n{} files in {}\n", files.len(), args.out.display()))?;
+    output::print(&format!("{summary}\n{} files in {}\n", files.len(), output::shown(&args.out)))?;
     Ok(holds)
 }
 
