@@ -8,7 +8,7 @@ mod common;
 use common::{honest, points, tolerances as tol};
 use piezobeam::{
     Beam, Conduction, Curve, Error, Foundation, Function, HeapWorkspace, History, Law, Linear, Load, Mesh,
-    Model, Potential, Problem, Report, Scene, Settings, Solution, Status, StoragePlace,
+    Model, Potential, Problem, Reached, Report, Scene, Settings, Solution, Status, StoragePlace,
 };
 use std::cell::Cell;
 
@@ -266,6 +266,77 @@ fn memory_that_ends_anywhere() {
             }
             Err(error) => assert_eq!(error, Error::Capacity { needed: elements, available: room }),
         }
+    }
+}
+
+/// How a search for a mesh ended, and all bits of its solution.
+type Search = Result<(Reached, (Report<f64>, Vec<u64>)), Error>;
+
+fn search<M: Model<f64>>(scene: &M, memory: &mut [StoragePlace<f64, &M>]) -> Search {
+    let problem = Problem::new(scene, Mesh::uniform(8)).expect("a scene");
+    let found = problem.solve_to(memory, 1e-4, &Settings::default())?;
+    is_honest(&found.solution);
+    Ok((found.reached, bits(&found.solution)))
+}
+
+#[test]
+fn memory_for_a_mesh_that_ends_anywhere() {
+    let scene = whole();
+    let most = 150;
+    let mut memory = vec![StoragePlace::default(); most];
+    let mut ends = [0; 3];
+    for room in (0..=most).rev() {
+        let end = search(&scene, &mut memory[..room]);
+        assert!(end == search(&scene, &mut vec![StoragePlace::default(); room]), "room for {room}");
+        match end {
+            Ok((reached, (report, _))) => {
+                assert!(report.elements <= room && report.status == Status::Converged, "{room}: {report:?}");
+                assert!(matches!(reached, Reached::Tolerance | Reached::Capacity), "{room}: {reached}");
+                ends[usize::from(reached == Reached::Capacity)] += 1;
+            }
+            Err(error) => {
+                assert_eq!(error, Error::Capacity { needed: 8, available: room });
+                ends[2] += 1;
+            }
+        }
+    }
+    assert!(ends.into_iter().all(|count| count > 0), "{ends:?}");
+
+    let problem = Problem::new(&scene, Mesh::uniform(8)).expect("a scene");
+    let (mut places, settings) = (HeapWorkspace::new(), Settings::default());
+    let solution = problem.solve(&mut places, &settings).expect("a solution");
+    for room in (0..=most).rev() {
+        let end = solution.certify(&mut memory[..room], &settings);
+        let mut fresh = vec![StoragePlace::default(); room];
+        assert_eq!(end, solution.certify(fresh.as_mut_slice(), &settings), "room for {room}");
+        assert_eq!(end.is_ok(), room >= 32, "{end:?}");
+    }
+}
+
+#[test]
+fn profiles_that_fail_in_a_search_for_a_mesh() {
+    let fuse = Fuse::default();
+    let law = Linear(Function(|x: f64| fuse.or(f64::NAN, 1e10 + x)));
+    let scene = Scene::new(1.0, Beam::elastic(5000.0)).foundation(Foundation { law, gap: () }).load(Load {
+        transverse: Function(|x: f64| 1e6 * (1.0 - 2.0 * x)),
+        axial: (),
+        points: (),
+    });
+    let mut memory = vec![StoragePlace::default(); 400];
+    let want = search(&scene, &mut memory);
+    assert!(matches!(want, Ok((Reached::Tolerance, _))), "{want:?}");
+    let calls = fuse.calls.get();
+    assert!(calls > 200, "{calls}");
+    for due in 1..=calls {
+        fuse.set(due);
+        let end = search(&scene, &mut memory);
+        fuse.set(0);
+        match end {
+            Err(error) => assert!(error.to_string().starts_with("foundation.stiffness"), "{error}"),
+            // Looked at between nodes only.
+            Ok((_, (report, _))) => assert!(report.element_visits > 0),
+        }
+        assert!(search(&scene, &mut memory) == want, "the search after call {due} failed is another");
     }
 }
 

@@ -587,6 +587,89 @@ mod linux {
         }
     }
 
+    const SWEEP: &str = "sweep halves.toml --elements 50 --vary foundation.stiffness=lin:1e7:1e8:20";
+
+    #[test]
+    fn rows_of_a_sweep_are_kept_in_a_regular_file_or_not_at_all() {
+        let folder = folder();
+        let made = shell(
+            folder.path(),
+            "mkfifo pipe.csv.partial && ln -s /dev/zero zero.csv.partial && ln -s /dev/full full.csv.partial \
+             && mkdir folder.csv.partial && printf 'piezobeam sweep \\377' > bytes.csv.partial \
+             && yes | head -c 3000000 > long.csv.partial",
+        );
+        assert!(made.status.success());
+        let no_file =
+            "is no regular file, and solved rows are kept in one; remove it, or choose another --out";
+        for (name, expected) in [
+            ("pipe", no_file),
+            ("zero", no_file),
+            ("full", no_file),
+            ("folder", "cannot write folder.csv.partial: "),
+            ("long", "holds rows of another sweep"),
+        ] {
+            let message = refusal(&folder, &format!("{SWEEP} --out {name}.csv"));
+            assert!(
+                message.contains(expected) && message.contains(&format!("{name}.csv.partial")),
+                "{message}"
+            );
+            assert!(!folder.path().join(format!("{name}.csv")).exists());
+        }
+        // A first line without an end is torn, and written anew.
+        assert_eq!(piezobeam(folder.path(), &format!("{SWEEP} --out bytes.csv")).status.code(), Some(0));
+    }
+
+    #[test]
+    fn sweeps_to_full_disks_and_readers_that_go_away() {
+        let folder = folder();
+        let output = shell(folder.path(), &format!("\"$P\" {SWEEP} > /dev/full"));
+        assert_eq!(output.status.code(), Some(2));
+        assert!(text(&output.stderr).contains("standard output"), "{}", text(&output.stderr));
+        let line = format!("{{ \"$P\" {SWEEP}; echo $? >&2; }} | head -c 1 > /dev/null");
+        assert!(text(&shell(folder.path(), &line).stderr).ends_with("0\n"));
+        // A limit on the size of files ends a disk in the middle of the rows.
+        let line = format!("trap '' XFSZ; ulimit -f 1; \"$P\" {SWEEP} --out a.csv");
+        let output = shell(folder.path(), &line);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(
+            text(&output.stderr).starts_with("piezobeam: cannot write a.csv"),
+            "{}",
+            text(&output.stderr)
+        );
+        assert!(!folder.path().join("a.csv").exists());
+        // With room again it goes on, past the line that was torn.
+        let whole = piezobeam(folder.path(), SWEEP).stdout;
+        assert_eq!(piezobeam(folder.path(), &format!("{SWEEP} --out a.csv")).status.code(), Some(0));
+        assert_eq!(std::fs::read(folder.path().join("a.csv")).expect("a file"), whole);
+        assert_eq!(entries(folder.path()), ["a.csv", "halves.toml"]);
+    }
+
+    #[test]
+    fn of_sweeps_to_one_table_one_wins_and_the_others_say_so() {
+        let folder = folder();
+        let line = format!("{SWEEP} --method bermudez-moreno --jobs 1 --out one.csv");
+        let run = || {
+            let command = Command::new(PROGRAM)
+                .args(line.split_whitespace())
+                .current_dir(folder.path())
+                .stdout(Stdio::null())
+                .stderr(Stdio::piped())
+                .spawn();
+            command.expect("a run")
+        };
+        let runs: Vec<_> = (0..6).map(|_| run()).collect();
+        let ends: Vec<_> = runs.into_iter().map(|run| run.wait_with_output().expect("an end")).collect();
+        let lost: Vec<_> = ends.iter().filter(|end| end.status.code() == Some(2)).collect();
+        assert!(lost.len() < ends.len(), "{ends:?}");
+        for end in lost {
+            let said = text(&end.stderr);
+            assert!(said.contains("one.csv.partial is in use") || said.contains("one.csv exists"), "{said}");
+        }
+        let table = std::fs::read_to_string(folder.path().join("one.csv")).expect("a table");
+        assert_eq!(table.lines().count(), 21);
+        assert_eq!(entries(folder.path()), ["halves.toml", "one.csv"]);
+    }
+
     #[test]
     fn names_do_not_command_the_terminal() {
         let folder = folder();
@@ -605,6 +688,9 @@ mod linux {
             "@",
             "paper --out @",
             "paper --out p@",
+            "sweep @ --vary length=1,2 --out no/@.csv",
+            "sweep halves.toml --vary length=1,2 --out p@/a.csv",
+            "sweep halves.toml --vary @=1,2",
         ] {
             let output = shell(folder.path(), &line(rest));
             let said = text(&output.stdout) + &text(&output.stderr);

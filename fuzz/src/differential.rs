@@ -1,123 +1,295 @@
-//! One scene, solved in two ways: on a mesh and a finer one, in double and in single precision, alone and after another.
+//! One scene, solved in two ways: on a mesh and a finer one, in double and in single precision, after other scenes and
+//! alone, on a mesh made for it and on a uniform one.
 
 use crate::honest;
 use arbitrary::{Arbitrary, Unstructured};
 use piezobeam::{
-    Beam, Foundation, HeapWorkspace, History, Linear, Load, Mesh, Model, Problem, Real, Scene, Settings,
-    Solution, Status, Steps,
+    Beam, Compliance, Conduction, Foundation, HeapWorkspace, History, Linear, Load, Mesh, Model, Potential,
+    Problem, Profile, Reached, Real, Scene, Settings, Smooth, Solution, Status, Steps, StoragePlace,
 };
+use std::fmt::Debug;
 
-/// A bending beam on a foundation at a distance, in numbers that any of the ways can do.
+/// A beam on a foundation at a distance, in numbers that any of the ways can do, and how it changes.
 #[derive(Arbitrary, Clone, Copy, Debug)]
 struct Input {
     elements: u8,
+    /// Sums of one input in four, as they take longer than all else.
+    sums: u8,
+    way: Way,
+    /// The beam conducts.
+    electric: bool,
+    scene: State,
+    /// What was before, for histories.
+    past: [Change; 3],
+}
+
+#[derive(Arbitrary, Clone, Copy, Debug, PartialEq)]
+enum Way {
+    Refined,
+    Single,
+    History,
+    Adaptive,
+    Certified,
+}
+
+#[derive(Arbitrary, Clone, Copy, Debug)]
+struct State {
     /// k L^4 / C in parts of 10 decades from 1e-2 on.
     rigidity: u8,
     /// The gap over what the load bends.
     gap: i8,
-    /// Loads on three thirds, and by how much they change for the history.
+    /// Loads on three thirds.
     load: [i8; 3],
-    change: [i8; 3],
-    way: u8,
+    /// Potentials of the ends.
+    ends: [i8; 2],
+    /// Conduction, over what (2.15) allows, and its truncation.
+    mu: [u8; 2],
+    truncation: u8,
 }
 
-const BREAKS: [f64; 2] = [0.3125, 0.6875];
+/// What was other, one step before.
+#[derive(Arbitrary, Clone, Copy, Debug)]
+enum Change {
+    Nothing,
+    Load([i8; 3]),
+    Rigidity(i8),
+    Gap(i8),
+    Ends([i8; 2]),
+    All(State),
+}
+
+impl Change {
+    fn of(self, after: State) -> State {
+        let mut before = after;
+        match self {
+            Self::Nothing => {}
+            Self::Load(by) => before.load = std::array::from_fn(|i| before.load[i].saturating_add(by[i] / 4)),
+            Self::Rigidity(by) => before.rigidity = before.rigidity.saturating_add_signed(by / 4),
+            Self::Gap(by) => before.gap = before.gap.saturating_add(by / 4),
+            Self::Ends(by) => before.ends = std::array::from_fn(|i| before.ends[i].saturating_add(by[i] / 4)),
+            Self::All(other) => before = other,
+        }
+        before
+    }
+}
+
+/// Either precision.
+trait Number: Real + Profile<Self> + Smooth<Self> {}
+impl<T: Real + Profile<T> + Smooth<T>> Number for T {}
+
+/// Nodes of meshes whose elements are a multiple of four.
+const BREAKS: [f64; 2] = [0.25, 0.75];
 
 struct Data<T> {
     breaks: [T; 2],
     values: [T; 3],
     stiffness: T,
     gap: T,
+    ends: [T; 2],
+    mu: [T; 2],
+    truncation: T,
 }
 
-impl Input {
-    fn data<T: Real>(&self, load: [i8; 3]) -> Data<T> {
+impl State {
+    fn data<T: Real>(&self) -> Data<T> {
+        let truncation = 10f64.powf(f64::from(self.truncation) / 128.0 - 1.0);
+        // Both margins of (2.15), for a permittivity and a bending stiffness of 1, are at least 2.
+        let most = 2.0 / truncation;
         Data {
             breaks: BREAKS.map(T::of),
-            values: load.map(|f| T::of(f64::from(f))),
+            values: self.load.map(|f| T::of(f64::from(f))),
             stiffness: T::of(10f64.powf(f64::from(self.rigidity) / 255.0 * 10.0 - 2.0)),
             gap: T::of(f64::from(self.gap) / 384.0),
+            ends: self.ends.map(|q| T::of(f64::from(q) / 64.0)),
+            mu: self.mu.map(|mu| T::of(f64::from(mu) / 256.0 * most)),
+            truncation: T::of(truncation),
         }
-    }
-
-    fn changed(&self) -> [i8; 3] {
-        std::array::from_fn(|i| self.load[i].saturating_add(self.change[i] / 16))
     }
 }
 
-macro_rules! scene {
-    ($data:ident, $t:ty) => {
-        Scene::new(1.0, Beam::<$t>::elastic(1.0))
-            .foundation(Foundation { law: Linear($data.stiffness), gap: $data.gap })
-            .load(Load {
-                transverse: Steps { breaks: &$data.breaks, values: &$data.values },
-                axial: (),
-                points: (),
-            })
-    };
+fn elastic<T: Number>(data: &Data<T>) -> impl Model<T> + Debug {
+    Scene::new(T::one(), Beam::elastic(T::one()))
+        .foundation(Foundation { law: Linear(data.stiffness), gap: data.gap })
+        .load(Load {
+            transverse: Steps { breaks: &data.breaks, values: &data.values },
+            axial: (),
+            points: (),
+        })
+}
+
+fn electric<T: Number>(data: &Data<T>) -> impl Model<T> + Debug {
+    let [mu1, mu2] = data.mu;
+    let [left, right] = data.ends;
+    let beam = Beam { bending: T::one(), axial: T::of(3.0), piezo: T::of(0.7), permittivity: T::one() };
+    Scene::new(T::one(), beam)
+        .foundation(Foundation { law: Linear(data.stiffness), gap: data.gap })
+        .conduction(Conduction {
+            mu1,
+            mu2,
+            truncation: data.truncation,
+            potential_truncation: data.truncation,
+        })
+        .load(Load {
+            transverse: Steps { breaks: &data.breaks, values: &data.values },
+            axial: data.values[0],
+            points: (),
+        })
+        .potential(Potential { left, right })
 }
 
 /// Two ways agree where both say that they converged; each is in equilibrium, and nowhere pulled.
 pub fn differential(data: &[u8]) {
     let Ok(input) = Input::arbitrary(&mut Unstructured::new(data)) else { return };
-    let coarse = 16 + usize::from(input.elements % 48);
-    let double = input.data::<f64>(input.load);
-    let scene = scene!(double, f64);
-    let (status, bending) = solved(&scene, coarse);
-    assert!(matches!(status, Status::Converged | Status::ToleranceBelowFloor), "{status:?}: {input:?}");
-    if status != Status::Converged {
-        return;
+    let [a, b, c] = input.past;
+    // The scene itself is the last one.
+    let one = b.of(c.of(input.scene));
+    let states = [a.of(one), one, c.of(input.scene), input.scene];
+    let double = states.map(|state| state.data::<f64>());
+    let single = input.scene.data::<f32>();
+    if input.electric {
+        compare(&input, &double.each_ref().map(electric), &electric(&single));
+    } else {
+        compare(&input, &double.each_ref().map(elastic), &elastic(&single));
     }
-    // What one unit of load bends, or the gap does.
-    let size = bending.iter().fold(f64::MIN_POSITIVE, |m, w| m.max(w.abs()));
-    let (what, other, allowed) = match input.way % 3 {
-        // Order four, where an element resolves the foundation's boundary layer; else it is half wrong at most.
-        0 => {
-            let layers = double.stiffness / (coarse as f64).powi(4);
-            ("refined", solved(&scene, 4 * coarse), (1e-2 * (1.0 + layers)).min(0.5))
-        }
-        1 => {
-            let single = input.data::<f32>(input.load);
-            ("single", solved(&scene!(single, f32), coarse), 1e-2)
-        }
-        _ => {
-            let other = input.data::<f64>(input.changed());
-            let first = scene!(other, f64);
-            let mut memory = HeapWorkspace::new();
-            let mut history = History::new(Mesh::uniform(coarse), &mut memory);
-            assert!(history.solve(&first, &Settings::default()).is_ok());
-            let after = history.solve(&scene, &Settings::default()).map(|s| look(&s));
-            ("history", after.expect("a scene"), 1e-6)
+}
+
+fn compare<M: Model<f64> + Debug, N: Model<f32>>(input: &Input, scenes: &[M; 4], single: &N) {
+    let scene = &scenes[3];
+    // Few elements, now and then more; for meshes that lie in one another a multiple of four.
+    let coarse = match usize::from(input.elements) {
+        few @ 0..192 => 4 + few % 5,
+        some @ 192..248 => 8 + some % 9,
+        more => 4 * (more - 236),
+    };
+    let coarse = if input.way == Way::Certified { coarse.min(11) / 4 * 4 } else { coarse };
+    let sums = input.sums.is_multiple_of(4);
+    let mu2 = scenes.iter().map(|scene| scene.conduction().mu2.value(0.5, 0.5)).fold(0.0, f64::max);
+    let agree = |what: &str, a: &Looked, b: &Looked, allowed: f64, digits: f64| {
+        if a.status == Status::Converged && b.status == Status::Converged {
+            a.assert_near(b, allowed, digits, mu2, || format!("{what}: {input:?} {scene:?}"));
         }
     };
-    if other.0 == Status::Converged {
-        // Without a load there is the gap's rounding.
-        let digits = if what == "single" { f64::from(f32::EPSILON) } else { f64::EPSILON };
-        let rounding = 256.0 * digits * double.gap.abs();
-        for (a, b) in bending.iter().zip(&other.1) {
-            assert!(
-                (a - b).abs() <= allowed * size + rounding,
-                "{what}: {a:e} and {b:e} of {size:e}: {input:?}"
-            );
+    let rigidity = scene.foundation().law.coefficient(0.5, 0.5);
+    let layers = |elements: usize| -> f64 { rigidity / (elements as f64).powi(4) };
+    if input.way == Way::History {
+        let mut memory = HeapWorkspace::new();
+        let mut history = History::new(Mesh::uniform(coarse), &mut memory);
+        for scene in scenes {
+            let after =
+                history.solve(scene, &Settings::default()).map(|s| Looked::at(&s, sums)).expect("a scene");
+            let fresh = solved(scene, coarse, false);
+            assert!(after.is_solved() && fresh.is_solved(), "{after:?} {fresh:?}: {input:?}");
+            agree("history", &fresh, &after, 1e-6, f64::EPSILON);
         }
+        return;
+    }
+    let problem = Problem::new(scene, Mesh::uniform(coarse)).expect("a scene without mistakes");
+    let mut memory = HeapWorkspace::new();
+    let solution = problem.solve(&mut memory, &Settings::default()).expect("settings in range");
+    let looked = Looked::at(&solution, sums);
+    assert!(looked.is_solved(), "{looked:?}: {input:?}");
+    match input.way {
+        // Order four, where an element resolves the foundation's boundary layer; from 16 on it is half wrong at most.
+        Way::Refined => {
+            let allowed = 1e-2 * (1.0 + layers(coarse));
+            let allowed = if coarse < 16 { allowed } else { allowed.min(0.5) };
+            agree("refined", &looked, &solved(scene, 4 * coarse, false), allowed, f64::EPSILON);
+        }
+        Way::Single => agree("single", &looked, &solved(single, coarse, sums), 1e-2, f32::EPSILON.into()),
+        Way::Adaptive => {
+            const TOLERANCE: f64 = 1e-4;
+            const FINE: usize = 32;
+            let mut memory = vec![StoragePlace::default(); 128];
+            let found = problem.solve_to(memory.as_mut_slice(), TOLERANCE, &Settings::default());
+            let found = found.expect("a tolerance");
+            let looked = Looked::at(&found.solution, sums);
+            assert!(looked.is_solved(), "{looked:?}: {input:?}");
+            if found.reached != Reached::Tolerance {
+                return;
+            }
+            let fine = solved(scene, FINE, false);
+            let allowed = 0.5_f64.min(10.0 * TOLERANCE + 1e-2 * layers(FINE));
+            agree("adaptive", &looked, &fine, allowed, f64::EPSILON);
+        }
+        Way::Certified => {
+            // Both are within their bounds of the solution, so they are within the sum of each other.
+            let finer = Problem::new(scene, Mesh::uniform(2 * coarse)).expect("a scene without mistakes");
+            let mut memory = HeapWorkspace::new();
+            let finer = finer.solve(&mut memory, &Settings::default()).expect("settings in range");
+            // Without any bending there is nothing to compare with.
+            let bent = finer.nodes().any(|x| finer.at(x).bending != 0.0);
+            if let (Some(a), Some(b)) = (bound(&solution), bound(&finer))
+                && b < 1.0
+                && bent
+            {
+                let distance = solution.distance(&finer).expect("meshes in one another");
+                assert!(distance <= (a + b) / (1.0 - b) + 1e-9, "{distance:e}, {a:e}, {b:e}: {input:?}");
+            }
+        }
+        Way::History => {}
     }
 }
 
-fn solved<T: Real, M: Model<T>>(scene: &M, elements: usize) -> (Status, Vec<f64>) {
+/// The bound with the memory that it asks for, but not for ever finer meshes.
+fn bound<M: Model<f64>>(solution: &Solution<'_, f64, M>) -> Option<f64> {
+    let mut memory = vec![StoragePlace::default(); 64];
+    solution.certify(memory.as_mut_slice(), &Settings::default()).expect("memory").bending_bound
+}
+
+fn solved<T: Real, M: Model<T>>(scene: &M, elements: usize, sums: bool) -> Looked {
     let problem = Problem::new(scene, Mesh::uniform(elements)).expect("a scene without mistakes");
     let mut memory = HeapWorkspace::new();
-    look(&problem.solve(&mut memory, &Settings::default()).expect("settings in range"))
+    Looked::at(&problem.solve(&mut memory, &Settings::default()).expect("settings in range"), sums)
 }
 
-/// Status and bending of a solution that is what it is called.
-fn look<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> (Status, Vec<f64>) {
-    let report = solution.report();
-    let found = honest::departure(solution);
-    if report.status == Status::Converged {
-        let allowed = 1e-4_f64.max(1e3 * report.residual.max(report.floor).f64());
-        let worst = [found.moment, found.bending, found.law].into_iter().all(|d| d <= allowed);
-        assert!(found.finite && worst && found.tension <= 0.0, "{found:?} {report:?}");
+/// Status and fields of a solution.
+#[derive(Debug)]
+struct Looked {
+    status: Status,
+    bending: Vec<f64>,
+    /// Stretching and potential.
+    electric: Vec<f64>,
+    gap: f64,
+}
+
+impl Looked {
+    /// Of a solution that is, with `sums`, what it is called.
+    fn at<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>, sums: bool) -> Self {
+        let status = solution.report().status;
+        if sums
+            && status == Status::Converged
+            && let Err(what) = honest::check(solution)
+        {
+            panic!("{what}");
+        }
+        let fields: Vec<_> = (1..8).map(|i| solution.at(T::of(f64::from(i) / 8.0))).collect();
+        let electric = fields.iter().flat_map(|f| [f.stretching, f.potential]).flatten();
+        Self {
+            status,
+            bending: fields.iter().map(|f| f.bending.f64()).collect(),
+            electric: electric.map(Real::f64).collect(),
+            gap: fields[0].gap.map_or(0.0, Real::f64).abs(),
+        }
     }
-    let at = |i: u32| solution.at(T::of(f64::from(i) / 16.0)).bending.f64();
-    (report.status, (0..=16).map(at).collect())
+
+    fn is_solved(&self) -> bool {
+        matches!(self.status, Status::Converged | Status::ToleranceBelowFloor)
+    }
+
+    /// The fields are those of `other`, but for so much of the largest and the rounding of what they are differences of.
+    /// Such bending makes another current, mu2 times a square.
+    fn assert_near(&self, other: &Self, allowed: f64, digits: f64, mu2: f64, said: impl Fn() -> String) {
+        let largest =
+            |fields: &[f64]| fields.iter().fold(f64::MIN_POSITIVE, |most, field| most.max(field.abs()));
+        let size = largest(&self.bending);
+        let off = allowed * size + 256.0 * digits * self.gap;
+        let electric = allowed * largest(&self.electric) + mu2 * (size + self.gap) * off;
+        for (one, two, off) in
+            [(&self.bending, &other.bending, off), (&self.electric, &other.electric, electric)]
+        {
+            for (a, b) in one.iter().zip(two) {
+                assert!((a - b).abs() <= off, "{a:e} and {b:e}, {off:e} allowed: {}", said());
+            }
+        }
+    }
 }

@@ -1,17 +1,39 @@
-//! Numbers with three times the digits of `f64`.
+//! Numbers with more digits than `f64`: twice as many, which are quick, and three times as many, to ask where those do not
+//! decide.
 
 use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
+use std::ops::{Add, Div, Mul, Sub};
 
 /// A number of 160 bits.
 pub type Exact = FBig<HalfEven, 2>;
+/// A number of 106 bits, the sum of two doubles.
+pub type Double = qd::Quad;
 
-/// The number x, which has to be finite.
-pub fn exact(x: f64) -> Exact {
-    FBig::try_from(x).unwrap_or_default().with_precision(160).value()
+/// The arithmetic of either.
+pub trait Digits:
+    Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
+{
+    /// The number x, which has to be finite.
+    fn of(x: f64) -> Self;
+    /// The nearest double.
+    fn near(&self) -> f64;
 }
 
-/// The nearest double.
-pub fn double(x: &Exact) -> f64 {
-    x.to_f64().value()
+impl Digits for Exact {
+    fn of(x: f64) -> Self {
+        FBig::try_from(x).unwrap_or_default().with_precision(160).value()
+    }
+    fn near(&self) -> f64 {
+        self.to_f64().value()
+    }
+}
+
+impl Digits for Double {
+    fn of(x: f64) -> Self {
+        x.into()
+    }
+    fn near(&self) -> f64 {
+        self.0
+    }
 }

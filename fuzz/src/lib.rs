@@ -22,6 +22,9 @@ mod reader;
 #[path = "../../src/real.rs"]
 #[allow(dead_code, reason = "the fuzz target asks for roots alone")]
 mod real;
+#[path = "../../tests/common/tolerances.rs"]
+#[allow(dead_code, reason = "tests have more to allow")]
+mod tolerances;
 
 pub use differential::differential;
 pub use recursion::recursion;

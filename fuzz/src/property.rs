@@ -1,5 +1,6 @@
 //! What has to hold of any scene.
 
+use crate::honest;
 use piezobeam::{
     Compliance, Error, Fields, HeapWorkspace, Law, Mesh, Model, Problem, Profile, Real, Settings, Solution,
     Status,
@@ -29,9 +30,18 @@ impl<T: Real, F: Fn(T, T) -> (T, T)> Compliance<T> for Named<F, T> {
     }
 }
 
+/// What else to look at of a solution that is called converged.
+#[derive(Clone, Copy)]
+pub struct Also {
+    /// The sums of [`honest`], whose rule has to be exact for the law.
+    pub sums: bool,
+    /// Bounds of the error, which have to be numbers that could be.
+    pub bounds: bool,
+}
+
 /// A refused input or a status; after `Converged` a residual at most `stop`, finite fields, no tension in the
-/// contact, clamps where they were; visits within their cap whatever happened.
-pub fn check<T: Real, M: Model<T> + Debug>(scene: M, mesh: Mesh<'_, T>, settings: &Settings<T>) {
+/// contact, clamps where they were, and what [`honest`] says; visits within their cap whatever happened.
+pub fn check<T: Real, M: Model<T> + Debug>(scene: M, mesh: Mesh<'_, T>, settings: &Settings<T>, also: Also) {
     let Ok(problem) = Problem::new(scene, mesh) else { return };
     let mut memory = HeapWorkspace::new();
     let Ok(solution) = problem.solve(&mut memory, settings) else { return };
@@ -53,9 +63,32 @@ pub fn check<T: Real, M: Model<T> + Debug>(scene: M, mesh: Mesh<'_, T>, settings
         assert!(last <= a && a <= b && b <= length, "zones: {a:?} to {b:?} after {last:?}\n{}", said());
         last = b;
     }
+    // The unknown is the penetration: of a gap this large it has no digit left for the bending.
+    if fields.iter().any(|f| f.gap.is_some_and(|gap| gap.abs() * T::epsilon() > length)) {
+        return;
+    }
     for f in fields {
         assert!(finite(&f), "not finite: {f:?}\n{}", said());
         assert!(f.pressure.is_none_or(|p| p >= T::zero()), "tension: {f:?}\n{}", said());
+    }
+    // Conduction stronger than (2.15) allows is more than a few elements resolve, and the residual is one over the largest
+    // moment, which that of elements of very different lengths is not.
+    let nodes: Vec<f64> = solution.nodes().map(Real::f64).collect();
+    let lengths = nodes.windows(2).map(|pair| pair[1] - pair[0]);
+    let [least, most] =
+        lengths.fold([f64::INFINITY, 0.0_f64], |[least, most], h| [least.min(h), most.max(h)]);
+    if also.sums
+        && most <= 1000.0 * least
+        && solution.uniqueness().certified
+        && let Err(what) = honest::check(&solution)
+    {
+        panic!("{what}\n{}", said());
+    }
+    if also.bounds
+        && let Ok(found) = solution.certify(&mut HeapWorkspace::new(), settings)
+    {
+        let bounds = [found.bending_bound, found.electric_bound].into_iter().flatten();
+        assert!({ bounds }.all(|bound| bound >= T::zero()), "{found:?}\n{}", said());
     }
     // Both ends are clamped, to half the digits of what cancels there.
     let middle = T::of(0.5) * length;

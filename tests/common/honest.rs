@@ -5,7 +5,8 @@
 //! integrate to slopes and deflections, strains to u and q, and these end where the other clamp stands. All
 //! sums are plain ones over Gauss points between the kinks of the forces.
 
-use piezobeam::{Compliance, Model, Profile, Real, Smooth, Solution};
+use super::tolerances as tol;
+use piezobeam::{Compliance, Model, Profile, Real, Smooth, Solution, Warning};
 use std::cell::Cell;
 
 /// Departures, each relative to the size of what cancels in it.
@@ -83,6 +84,19 @@ impl Hermite {
     }
 }
 
+/// Finite, in equilibrium, in one piece, and nowhere pulled by the foundation.
+pub fn check<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Result<(), String> {
+    let report = solution.report();
+    let found = departure(solution);
+    let allowed = tol::HONEST.max(tol::HONEST_RESIDUALS * report.residual.max(report.floor).f64());
+    // A foundation that was taken as rigid has another law than the scene's, and a warning.
+    let rigid = solution.warnings().iter().any(|w| matches!(w, Warning::Rigid { .. }));
+    let law = if rigid { 0.0 } else { found.law };
+    let worst = [found.moment, found.bending, found.flux, found.electric, law];
+    let ok = found.finite && found.tension <= 0.0 && worst.into_iter().all(|departure| departure <= allowed);
+    if ok { Ok(()) } else { Err(format!("{found:?}, {report:?}")) }
+}
+
 /// The departures of a solution.
 pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departure {
     let scene = solution.scene();
@@ -117,7 +131,17 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
     let mut sizes = [moment.abs(), 0.0, 0.0, sigma.abs(), charge.abs(), 0.0, q.abs()];
     let mut worst = [0.0_f64; 7];
     let mut found = Departure::default();
-    let (mut drift, mut leak, mut lost) = (0.0, 0.0, 0.0);
+    let (mut lost, mut faint) = (0.0, 0.0);
+    // The reaction is a difference of the first element's moments over its length.
+    let [deflected, bent] = nodes
+        .iter()
+        .map(|&x| at(x))
+        .fold([0.0_f64; 2], |[w, m], f| [w.max(f.bending.f64().abs()), m.max(f.moment.f64().abs())]);
+    let mut drift = 4.0 * (T::epsilon() + solution.report().residual).f64() * bent / nodes[1];
+    // The field is a difference of potentials over the length.
+    let ends = scene.potential().left.f64().abs() + scene.potential().right.f64().abs();
+    let permittivity = beam.permittivity.value(number(0.0), number(nodes[1])).f64();
+    let mut leak = 16.0 * T::epsilon().f64() * permittivity * ends / scene.length().f64();
     // Forces that no mesh resolves may overflow between nodes that are in order, and no naive program sums them.
     let mut resolved = true;
     // The unknown is the penetration: a gap's rounding is in the bending, and what bends the beam so in the moment.
@@ -128,6 +152,8 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
         [gap, gap * (beam.bending.value(mid, mid).f64() / length / length)]
     });
     let blur = blur.fold([0.0_f64; 2], |m, b| [m[0].max(b[0]), m[1].max(b[1])]);
+    // Such bending is nothing but rounding.
+    resolved = resolved && (deflected > blur[0] || blur[0] == 0.0);
     let see = |worst: &mut f64, a: f64, b: f64, slack: f64| {
         let slack = slack + T::min_positive_value().f64() / T::epsilon().f64();
         let difference = (a - b).abs();
@@ -238,7 +264,8 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
                 current += weight * span * (conduction.mu2.value(number(x), mid).f64() * r * r);
                 drift += 16.0 * T::epsilon().f64() * weight * span * (p.abs() + drive.abs());
             }
-            let end = x0 + span;
+            // Not beyond the node, where a concentrated load makes a step.
+            let end = if to == 1.0 { b } else { x0 + span };
             moment += shear * span + lever;
             shear += force;
             let field = at(end);
@@ -257,6 +284,8 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
                 // Below the normal numbers coefficients and fluxes have no digits.
                 let tiny = 16.0 * T::min_positive_value().f64() * T::epsilon().f64();
                 lost += span * tiny * (1.0 + s.size_q) / beam.axial.value(number(x), mid).f64();
+                // Nor has P / EA, which acts on q by the axial force.
+                faint += span * tiny * sigma.abs() / beam.permittivity.value(number(x), mid).f64();
                 du += weight * span * s.du;
                 dq += weight * span * s.dq;
                 sizes[1] += weight * span * curvature.abs() * length;
@@ -283,7 +312,7 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
         let field = at(b);
         see(&mut worst[1], w, field.bending.f64(), blur[0]);
         see(&mut worst[5], u, or(field.stretching), lost);
-        see(&mut worst[6], q, or(field.potential), 0.0);
+        see(&mut worst[6], q, or(field.potential), faint);
         for point in load.points.iter().filter(|p| (p.x.f64() - b).abs() <= 1e-14 * scene.length().f64()) {
             shear += point.force.f64();
             moment -= point.moment.f64();
@@ -306,7 +335,7 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
     see(&mut worst[1], w, 0.0, blur[0]);
     see(&mut worst[5], u, 0.0, lost);
     if M::Permittivity::PRESENT {
-        see(&mut worst[6], q, scene.potential().right.f64(), 0.0);
+        see(&mut worst[6], q, scene.potential().right.f64(), faint);
     }
     let relative = |i: usize| if worst[i] == 0.0 { 0.0 } else { worst[i] / sizes[i] };
     found.finite = finite.get();

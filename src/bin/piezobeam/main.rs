@@ -169,7 +169,7 @@ fn report(args: &ReportArgs) -> Outcome {
     output::print(&format!(
         "{}\n{} and {} files beside it\n",
         document.summary(),
-        page.display(),
+        output::shown(&page),
         files.len() - 1
     ))?;
     Ok(document.holds())

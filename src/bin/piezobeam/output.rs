@@ -59,7 +59,7 @@ impl fmt::Display for OutputError {
 }
 
 /// A path as it is safe to print.
-fn shown(path: &Path) -> String {
+pub fn shown(path: &Path) -> String {
     printable(&path.to_string_lossy())
 }
 

@@ -13,6 +13,8 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use crate::output::{OutputError, shown};
+
 /// An open journal, locked against a second run.
 pub struct Journal {
     path: PathBuf,
@@ -25,22 +27,28 @@ pub struct Journal {
 pub enum JournalError {
     Busy(PathBuf),
     Other(PathBuf),
-    Write(PathBuf, io::Error),
+    NoFile(PathBuf),
+    Write(OutputError),
 }
 
 impl fmt::Display for JournalError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Busy(path) => {
-                write!(f, "{} is in use: another run is writing it; let it finish", path.display())
+                write!(f, "{} is in use: another run is writing it; let it finish", shown(path))
             }
             Self::Other(path) => write!(
                 f,
                 "{} holds rows of another sweep, or of this scene before it was changed; remove it to start \
                  anew, or choose another --out",
-                path.display()
+                shown(path)
             ),
-            Self::Write(path, e) => write!(f, "cannot write {}: {e}", path.display()),
+            Self::NoFile(path) => write!(
+                f,
+                "{} is no regular file, and solved rows are kept in one; remove it, or choose another --out",
+                shown(path)
+            ),
+            Self::Write(error) => error.fmt(f),
         }
     }
 }
@@ -56,13 +64,17 @@ impl Journal {
         let mut path: OsString = out.into();
         path.push(".partial");
         let path = PathBuf::from(path);
-        let error = |e| JournalError::Write(path.clone(), e);
+        let error = |e| JournalError::Write(OutputError::Write(path.clone(), e));
         let mut options = File::options();
         let mut file =
             options.read(true).write(true).create(true).truncate(false).open(&path).map_err(error)?;
+        // A device or a pipe may have no end.
+        if !file.metadata().map_err(error)?.is_file() {
+            return Err(JournalError::NoFile(path));
+        }
         match file.try_lock() {
             Err(TryLockError::WouldBlock) => return Err(JournalError::Busy(path)),
-            Err(TryLockError::Error(e)) => return Err(JournalError::Write(path, e)),
+            Err(TryLockError::Error(e)) => return Err(error(e)),
             Ok(()) => {}
         }
         let mut bytes = Vec::new();
@@ -101,7 +113,8 @@ impl Journal {
     /// Adds a row, a line with its end.
     pub fn add(&mut self, number: usize, row: &str) -> Result<(), JournalError> {
         let line = format!("{number},{row}");
-        self.file.write_all(line.as_bytes()).map_err(|e| JournalError::Write(self.path.clone(), e))
+        let error = |e: io::Error| JournalError::Write(OutputError::Write(self.path.clone(), e));
+        self.file.write_all(line.as_bytes()).map_err(error)
     }
 
     /// Removes the file.
