@@ -884,9 +884,12 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         let short =
             |contact: Contact<T>| part.absorb(&loaded::<_, _, MIRRORED>(&contact, element, work, step), h);
         let absorbed = match work.touch {
-            Touch::Free if !ends => short(Contact::none()),
+            Touch::Free if !ends => {
+                part.absorb(&loaded::<_, _, MIRRORED>(&Contact::none(), element, work, step), h)
+            }
             touch @ (Touch::Full | Touch::High | Touch::Low) if !ends => {
-                short(Contact::uniform(touch, touch.stiffness(model, element, scale)))
+                let contact = Contact::uniform(touch, touch.stiffness(model, element, scale));
+                part.absorb(&loaded::<_, _, MIRRORED>(&contact, element, work, step), h)
             }
             _ => {
                 let contact =
