@@ -881,8 +881,6 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         let q = onto.as_ref().map(|ratio| || electric::potential(element, before, &work.node, ratio));
         work.touch = Touch::of(model, element, &motion.cubic(), q.as_ref());
         let h = if MIRRORED { -element.h } else { element.h };
-        let short =
-            |contact: Contact<T>| part.absorb(&loaded::<_, _, MIRRORED>(&contact, element, work, step), h);
         let absorbed = match work.touch {
             Touch::Free if !ends => {
                 part.absorb(&loaded::<_, _, MIRRORED>(&Contact::none(), element, work, step), h)
