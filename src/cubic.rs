@@ -3,7 +3,7 @@
 //! The local coordinate t runs from 0 at an element's *right* node to 1 at its left one, because there
 //! the relative unknowns give the coefficients without a difference of nodal values (see [`crate::sweep`]).
 
-use crate::real::Real;
+use crate::real::{Field, Real};
 use arrayvec::ArrayVec;
 
 /// c0 + c1 t + c2 t^2 + c3 t^3 on 0 <= t <= 1.
@@ -19,6 +19,25 @@ pub(crate) enum Side {
     Above,
     /// Undecided by the control values: roots have to be looked for.
     Both,
+}
+
+impl<T: Field> Cubic<T> {
+    /// The control values of the Bernstein form above a level: their hull holds the curve.
+    #[inline(always)]
+    pub(crate) fn control(&self, level: T) -> [T; 4] {
+        let [c0, c1, c2, c3] = self.0;
+        let third = T::of(1.0 / 3.0);
+        let b0 = c0 - level;
+        let b1 = b0 + c1 * third;
+        [b0, b1, b1 + (c1 + c2) * third, b0 + c1 + c2 + c3]
+    }
+
+    /// What rounding may make of a value on [0, 1].
+    #[inline(always)]
+    pub(crate) fn noise(&self) -> T {
+        let [c0, c1, c2, c3] = self.0.map(T::size);
+        (c0 + c1 + c2 + c3) * T::of(8.0) * T::EPSILON
+    }
 }
 
 impl<T: Real> Cubic<T> {
@@ -58,44 +77,56 @@ impl<T: Real> Cubic<T> {
 
     /// A number that no value on [0, 1] exceeds: the largest control value of the Bernstein form.
     pub(crate) fn hull(&self) -> T {
-        let [c0, c1, c2, c3] = self.0;
-        let b1 = c0 + c1 * T::of(1.0 / 3.0);
-        c0.max(b1).max(b1 + (c1 + c2) * T::of(1.0 / 3.0)).max(c0 + c1 + c2 + c3)
+        self.control(T::zero()).into_iter().fold(T::neg_infinity(), T::max)
     }
 
     /// Which side of `level` the whole cubic lies on, by the control values of its Bernstein form, whose
     /// hull holds the curve: `Below` and `Above` are certain up to rounding, `Both` is not.
     #[inline(always)]
     pub(crate) fn side(&self, level: T) -> Side {
-        let [c0, c1, c2, c3] = self.0;
-        let third = T::of(1.0 / 3.0);
-        let b0 = c0 - level;
-        let b1 = b0 + c1 * third;
-        let b2 = b1 + (c1 + c2) * third;
-        let b3 = b0 + c1 + c2 + c3;
+        self.side_by_hull(level).unwrap_or_else(|| self.side_by_extremes(level))
+    }
+
+    /// The same, where the control values tell.
+    #[inline(always)]
+    fn side_by_hull(&self, level: T) -> Option<Side> {
+        let [b0, b1, b2, b3] = self.control(level);
         let zero = T::zero();
         // Bitwise, so that no branch is taken but on the outcome.
         if (b0 <= zero) & (b1 <= zero) & (b2 <= zero) & (b3 <= zero) {
-            Side::Below
+            Some(Side::Below)
         } else if (b0 > zero) & (b1 > zero) & (b2 > zero) & (b3 > zero) {
-            Side::Above
+            Some(Side::Above)
         } else {
-            Self::side_but_for_rounding([b0, b1, b2, b3])
+            None
         }
     }
 
-    /// Where the cubic ends in a zero, as at a clamp, rounding decides the control value's sign: what is within
-    /// rounding of zero is on neither side.
+    /// The same where the control values do not tell: by the values at both ends and turning points. One that may be
+    /// rounding, as that of a cubic which ends in a zero at a clamp, is on neither side.
     #[inline(never)]
-    fn side_but_for_rounding(b: [T; 4]) -> Side {
-        let slack = T::of(8.0) * T::epsilon() * b.iter().fold(T::zero(), |sum, b| sum + b.abs());
-        if b.iter().all(|&b| b >= -slack) {
+    fn side_by_extremes(&self, level: T) -> Side {
+        let shifted = self.less(level);
+        let noise = shifted.noise();
+        let (mut least, mut most) = (T::infinity(), T::neg_infinity());
+        for t in shifted.turning_points().into_iter().chain([T::zero(), T::one()]) {
+            let value = shifted.at(t);
+            (least, most) = (least.min(value), most.max(value));
+        }
+        if least >= -noise {
             Side::Above
-        } else if b.iter().all(|&b| b <= slack) {
+        } else if most <= noise {
             Side::Below
         } else {
             Side::Both
         }
+    }
+
+    /// The cubic above a level.
+    #[inline(always)]
+    fn less(&self, level: T) -> Self {
+        let [c0, c1, c2, c3] = self.0;
+        Self([c0 - level, c1, c2, c3])
     }
 
     /// All t strictly inside (0, 1) where the cubic crosses `level` (changes its sign), ascending.
@@ -106,15 +137,15 @@ impl<T: Real> Cubic<T> {
     /// not finite has none.
     #[inline(always)]
     pub(crate) fn crossings(&self, level: T) -> ArrayVec<T, 3> {
-        if self.side(level) == Side::Both { self.search(level) } else { ArrayVec::new() }
+        if self.side_by_hull(level).is_none() { self.search(level) } else { ArrayVec::new() }
     }
 
     #[inline(never)]
     fn search(&self, level: T) -> ArrayVec<T, 3> {
         let mut roots = ArrayVec::new();
-        let shifted = Cubic([self.0[0] - level, self.0[1], self.0[2], self.0[3]]);
+        let shifted = self.less(level);
         // A value that may be rounding has no sign, and what lies between two such is no part to integrate.
-        let noise = T::epsilon() * shifted.0.iter().fold(T::zero(), |sum, c| sum + c.abs());
+        let noise = shifted.noise();
         let (mut from, mut before) = (T::zero(), shifted.at(T::zero()));
         for to in shifted.turning_points().into_iter().chain([T::one()]) {
             let value = shifted.at(to);
@@ -136,6 +167,11 @@ impl<T: Real> Cubic<T> {
     /// Zeros of the derivative inside (0, 1), ascending.
     pub(crate) fn turning_points(&self) -> ArrayVec<T, 2> {
         let [_, c1, c2, c3] = self.0;
+        // Where the control values of the derivative have one sign there is none.
+        let (zero, middle, end) = (T::zero(), c1 + c2, c1 + T::of(2.0) * c2 + T::of(3.0) * c3);
+        if (c1 > zero) & (middle > zero) & (end > zero) | (c1 < zero) & (middle < zero) & (end < zero) {
+            return ArrayVec::new();
+        }
         // c1 + 2 c2 t + 3 c3 t^2 = 0, scaled so that the discriminant neither over- nor underflows.
         let size = c1.abs().max(c2.abs()).max(c3.abs());
         let mut points = ArrayVec::new();
@@ -166,9 +202,10 @@ impl<T: Real> Cubic<T> {
 
     /// The root in [low, high], where the cubic is monotone and changes its sign.
     fn root_between(&self, mut low: T, mut high: T, rising: bool) -> T {
-        // Terms of one size cancel at a root: some units in the last place of their sum are all that a value can say.
+        // Terms cancel at a root: some units in the last place of their sum are all that a value can say.
         let [c0, c1, c2, c3] = self.0.map(T::abs);
-        let noise = T::epsilon() * (c0 + high * (c1 + high * (c2 + high * c3)));
+        // Newton's step leaves half the curvature times its square at most.
+        let bend = c2 + T::of(3.0) * c3;
         let mut t = T::of(0.5) * (low + high);
         // Each step either halves the bracket or is Newton's and at least halves the last step, so that
         // twice the scalar's digits and range of exponents bound the count; 200 covers both scalars.
@@ -183,8 +220,8 @@ impl<T: Real> Cubic<T> {
             let newton = t - value / self.slope(t);
             let step = (newton - t).abs();
             let inside = newton > low && newton < high;
-            if value.abs() <= noise {
-                // One step more takes what is left of the digits.
+            let noise = T::of(0.5) * T::epsilon() * (c0 + t * (c1 + t * (c2 + t * c3)));
+            if value.abs() <= noise || (inside && bend * step * step <= noise) {
                 return if inside { newton } else { t };
             }
             let next =

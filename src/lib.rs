@@ -72,6 +72,7 @@
 //! # Control and design
 //!
 //! [`History`] solves scenes one after the other, each from the last solution, and visits only what changed.
+//! [`Batch`] (feature `alloc`) solves many scenes of one kind on one mesh at once.
 //! [`Prepared::tangent`] and [`Prepared::adjoint`] differentiate a solution.
 //!
 //! # The paper's own methods
@@ -91,7 +92,7 @@
 //! |---|---|
 //! | `std` (default) | elementary functions from the standard library; includes `alloc` |
 //! | `libm` | elementary functions without it: `--no-default-features --features libm` |
-//! | `alloc` | [`HeapWorkspace`], [`Solution::zones`] |
+//! | `alloc` | [`HeapWorkspace`], [`Batch`], [`Solution::zones`] |
 //! | `cli` | the command line |
 //! | `parquet` | the command line's tables as Parquet files |
 //!
@@ -121,6 +122,8 @@ extern crate std;
 compile_error!("piezobeam needs elementary functions: enable the feature `std` or `libm`");
 
 mod accuracy;
+#[cfg(feature = "alloc")]
+mod batch;
 mod certificate;
 mod cubic;
 mod electric;
@@ -142,6 +145,8 @@ mod storage;
 mod sweep;
 
 pub use accuracy::{Adapted, Adaptive, Certificate, Reached};
+#[cfg(feature = "alloc")]
+pub use batch::{Batch, Group};
 pub use certificate::{Uniqueness, Warning};
 pub use cubic::Cubic;
 pub use error::{Error, Place};
@@ -154,7 +159,7 @@ pub use problem::{Prepared, Problem};
 pub use profile::{
     Curve, Flat, Function, Kept, Piece, Pieces, Polynomial, Profile, Room, Slot, Smooth, Steps, Table,
 };
-pub use real::{Pair, Quad, Real, Square};
+pub use real::{Field, Pair, Quad, Real, Square};
 pub use scene::{
     Beam, BeamPart, Conduction, ConductionPart, Foundation, FoundationPart, Load, LoadPart, Model, PointLoad,
     Points, Potential, PotentialPart, Scene,

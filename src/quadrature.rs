@@ -61,6 +61,20 @@ pub(crate) fn add_moments<T: Real, const J: usize>(moments: &mut [T; J], t: T, m
     }
 }
 
+/// Adds the integrals of `value` t^j from a to b, 0 <= a <= b, to its moments. With the length before the sum of
+/// a^i b^(j - i), nothing cancels on a short part.
+#[inline(always)]
+pub(crate) fn add_powers<T: Real>(moments: &mut [T; 7], a: T, b: T, value: T) {
+    const SHARES: [f64; 7] = [1.0, 1.0 / 2.0, 1.0 / 3.0, 1.0 / 4.0, 1.0 / 5.0, 1.0 / 6.0, 1.0 / 7.0];
+    let whole = value * (b - a);
+    let (mut sum, mut power) = (T::one(), a);
+    for (moment, share) in moments.iter_mut().zip(SHARES) {
+        *moment = *moment + whole * (T::of(share) * sum);
+        sum = b * sum + power;
+        power = power * a;
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,11 +1,11 @@
 //! The scalars of the solver, `f32` and `f64`, and the glam blocks that go with each.
 //!
-//! Kernels are written once against [`Real`]; the trait ties a scalar to its 2-vectors (a node's
-//! deflection and slope), 2x2 and 4x4 matrices. It is sealed: a new scalar has to keep the promises
+//! Kernels are written once against [`Real`], those without branches against [`Field`]; the traits tie a scalar to its 2-vectors (a node's
+//! deflection and slope), 2x2 and 4x4 matrices. They are sealed: a new scalar has to keep the promises
 //! that the kernels rely on (IEEE operations, no hidden fusing).
 
 use core::fmt::{Debug, Display};
-use core::ops::{Add, AddAssign, Mul, Neg, Sub};
+use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
 /// A pair of numbers at a node or an element's end: (deflection, slope) or (force, moment).
 pub trait Pair<T>:
@@ -53,29 +53,53 @@ pub trait Square<V, C>:
     fn turned(self) -> Self;
 }
 
-/// `f32` or `f64`, with the glam types that hold its blocks.
-pub trait Real:
-    num_traits::Float + Debug + Display + Default + Send + Sync + sealed::Sealed + 'static
+/// A number, or several in lockstep: the arithmetic of kernels that take the same steps whatever the numbers are, and
+/// the types that hold its blocks.
+pub trait Field:
+    Copy
+    + Debug
+    + Default
+    + PartialEq
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + sealed::Sealed
 {
     /// Pairs at a node ([`glam::Vec2`] or [`glam::DVec2`]).
     type Vec2: Pair<Self>;
     /// Blocks of the bending recursion ([`glam::Mat2`] or [`glam::DMat2`]).
     type Mat2: Square<Self::Vec2, [[Self; 2]; 2]>;
+    /// 0, as a constant.
+    const ZERO: Self;
+    /// The distance from 1 to the next larger number.
+    const EPSILON: Self;
+    /// Its size, |x|.
+    fn size(self) -> Self;
+    /// The nearest representable number.
+    fn of(x: f64) -> Self;
+    /// 1/x, if both are normal numbers. Several in lockstep do not wait for one that is not.
+    fn reciprocal(self) -> Option<Self>;
+    /// Is it finite? Of several, always: one that is not is found by its residual.
+    fn is_number(self) -> bool;
+    /// Is it larger? Of several, is any?
+    fn exceeds(self, other: Self) -> bool;
+}
+
+/// `f32` or `f64`, with the glam types that hold its blocks.
+pub trait Real: Field + num_traits::Float + Display + Send + Sync + 'static {
     /// Nodal unknowns of the monolithic system ([`glam::Vec4`] or [`glam::DVec4`]).
     type Vec4: Quad<Self>;
     /// Blocks of the monolithic recursion ([`glam::Mat4`] or [`glam::DMat4`]).
     type Mat4: Square<Self::Vec4, [[Self; 4]; 4]>;
-    /// 0, as a constant.
-    const ZERO: Self;
     /// Is it `f64`?
     const DOUBLE: bool;
-    /// The nearest representable number.
-    fn of(x: f64) -> Self;
     /// As `f64`, exactly.
     fn f64(self) -> f64;
 }
 
-mod sealed {
+pub(crate) mod sealed {
     pub trait Sealed {}
     impl Sealed for f32 {}
     impl Sealed for f64 {}
@@ -141,18 +165,39 @@ macro_rules! real {
                 self.transpose()
             }
         }
-        impl Real for $t {
+        impl Field for $t {
             type Vec2 = $v2;
             type Mat2 = $m2;
-            type Vec4 = $v4;
-            type Mat4 = $m4;
             const ZERO: Self = 0.0;
-            const DOUBLE: bool = size_of::<Self>() == 8;
+            const EPSILON: Self = <$t>::EPSILON;
+            #[inline(always)]
+            fn size(self) -> Self {
+                self.abs()
+            }
             #[inline(always)]
             #[allow(clippy::cast_possible_truncation, reason = "rounding to the scalar is the point")]
             fn of(x: f64) -> Self {
                 x as $t
             }
+            #[inline(always)]
+            fn reciprocal(self) -> Option<Self> {
+                let inside = |x: $t| x.abs() >= <$t>::MIN_POSITIVE && x.abs() <= <$t>::MAX;
+                let inverse = 1.0 / self;
+                (inside(self) && inside(inverse)).then_some(inverse)
+            }
+            #[inline(always)]
+            fn is_number(self) -> bool {
+                self.is_finite()
+            }
+            #[inline(always)]
+            fn exceeds(self, other: Self) -> bool {
+                self > other
+            }
+        }
+        impl Real for $t {
+            type Vec4 = $v4;
+            type Mat4 = $m4;
+            const DOUBLE: bool = size_of::<Self>() == 8;
             #[inline(always)]
             fn f64(self) -> f64 {
                 f64::from(self)
@@ -172,10 +217,10 @@ pub(crate) struct Sum<T, const EXACT: bool = true> {
     carry: T,
 }
 
-impl<T: Real, const EXACT: bool> Sum<T, EXACT> {
+impl<T: Field, const EXACT: bool> Sum<T, EXACT> {
     #[inline(always)]
     pub(crate) fn from(sum: T) -> Self {
-        Self { sum, carry: T::zero() }
+        Self { sum, carry: T::ZERO }
     }
 
     #[inline(always)]

@@ -7,7 +7,7 @@
 use crate::electric::Ratio;
 use crate::element::Element;
 use crate::profile::{Profile, Room, Slot};
-use crate::real::{Pair, Real};
+use crate::real::{Field, Pair, Real};
 use crate::scene::Model;
 use crate::sweep::pair::Bending;
 use crate::sweep::quad::Coupled;
@@ -41,12 +41,12 @@ impl<T: Real, M: Model<T>> Default for Node<T, M> {
 
 /// An element's deformation: relative unknowns e and the right node's d, both of the penetration.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct State<T: Real> {
+pub(crate) struct State<T: Field> {
     pub(crate) e: T::Vec2,
     pub(crate) d: T::Vec2,
 }
 
-impl<T: Real> State<T> {
+impl<T: Field> State<T> {
     /// The state (e, d), or the one that the step (e, d) leads to from here.
     #[inline(always)]
     pub(crate) fn then(self, step: bool, e: T::Vec2, d: T::Vec2) -> Self {

@@ -237,6 +237,35 @@ fn meshes_resolve_what_is_left_of_beams_and_loads() {
 }
 
 #[test]
+fn meshes_resolve_gaps_that_are_no_polynomials() {
+    let wave = |x: f64| {
+        let angle = 2.0 * std::f64::consts::PI * x;
+        [
+            0.2 * (1.0 - angle.cos()),
+            0.4 * std::f64::consts::PI * angle.sin(),
+            0.8 * std::f64::consts::PI.powi(2) * angle.cos(),
+        ]
+    };
+    let scene = Scene::new(1.0, Beam::elastic(5e3))
+        .foundation(Foundation { law: Linear(1e8), gap: piezobeam::Curve(wave) })
+        .load(Load { transverse: 1e6, axial: (), points: () });
+    let at = points(400, 1.0);
+    let column =
+        |found: &piezobeam::Solution<'_, f64, _>| at.iter().map(|&x| found.at(x).bending).collect::<Vec<_>>();
+    let finest = Problem::new(&scene, Mesh::uniform(5000)).expect("a scene");
+    let mut memory = HeapWorkspace::new();
+    let want = column(&finest.solve(&mut memory, &settings()).expect("settings"));
+    for (first, tolerance) in [(100, 1e-12), (64, 1e-10), (12, 1e-8), (12, 1e-11)] {
+        let problem = Problem::new(&scene, Mesh::uniform(first)).expect("a scene");
+        let mut memory = HeapWorkspace::new();
+        let found = problem.solve_to(&mut memory, tolerance, &settings()).expect("a tolerance");
+        assert_eq!(found.reached, Reached::Tolerance);
+        let error = relative(&column(&found.solution), &want);
+        assert!(error <= tolerance, "{error:e} for {tolerance:e}, {:?}", found.solution.report());
+    }
+}
+
+#[test]
 fn accuracy_ends_at_rounding_and_at_the_memory_and_says_so() {
     let scene = named("partial").scene;
     let problem = Problem::new(&scene, Mesh::uniform(16)).expect("a scene");

@@ -291,23 +291,35 @@ fn methods_of_the_paper_are_named_and_judged() {
 }
 
 #[test]
-fn the_report_holds_and_shows_its_pictures() {
+fn the_report_holds_and_is_one_page() {
     let folder = folder();
     let output = piezobeam(folder.path(), "report --quick --out found");
     assert_eq!(output.status.code(), Some(0), "{}{}", text(&output.stdout), text(&output.stderr));
     let said = text(&output.stdout);
-    assert!(said.lines().filter(|line| line.starts_with("holds: ")).count() >= 4, "{said}");
+    assert!(said.lines().filter(|line| line.starts_with("holds: ")).count() >= 12, "{said}");
+    assert!(said.lines().filter(|line| line.starts_with("artefact: ")).count() == 2, "{said}");
     assert!(!said.contains("FAILS"), "{said}");
-    let document = std::fs::read_to_string(folder.path().join("found/report.md")).expect("a document");
-    assert!(
-        document.starts_with("# Report\n\n`cargo beam report --quick`\n\n## The paper reproduced"),
-        "{document}"
-    );
-    let pictures: Vec<_> = document.lines().filter_map(|line| line.strip_prefix("![")).collect();
-    assert_eq!(pictures.len(), 8);
-    for picture in pictures {
-        let name = picture.split_once("](").and_then(|(_, rest)| rest.strip_suffix(')')).expect("a link");
-        assert!(folder.path().join("found").join(name).is_file(), "{name}");
+
+    let page = std::fs::read_to_string(folder.path().join("found/report.html")).expect("a page");
+    assert!(page.starts_with("<!DOCTYPE html>") && page.contains("prefers-color-scheme: dark"));
+    assert!(page.matches("<svg ").count() >= 12);
+    // Nothing is loaded from elsewhere.
+    for word in ["src=", "@import", "url(", "<link", "<script"] {
+        assert!(!page.contains(word), "{word}");
     }
+    let names = std::fs::read_dir(folder.path().join("found")).expect("a folder");
+    let names: Vec<_> =
+        names.map(|f| f.expect("a file").file_name().into_string().expect("a name")).collect();
+    let data: Vec<_> = names.iter().filter(|name| name.ends_with(".csv")).collect();
+    assert!(data.len() >= 20, "{names:?}");
+    for name in data {
+        assert!(page.contains(&format!("<code>{name}</code>")), "{name} is named on the page");
+        let mut reader = csv::Reader::from_path(folder.path().join("found").join(name)).expect("CSV");
+        let rows = reader.records().collect::<Result<Vec<_>, _>>().expect("rows of one length");
+        assert!(!rows.is_empty(), "{name}");
+    }
+    let picture =
+        std::fs::read_to_string(folder.path().join("found/work-partial-bending.svg")).expect("a picture");
+    assert!(roxmltree::Document::parse(&picture).is_ok());
     assert!(refusal(&folder, "report --quick --out found").contains("--force"));
 }

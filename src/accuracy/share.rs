@@ -2,13 +2,13 @@
 //!
 //! Nodal values of bending are exact but for three things: the contact force inside an element follows its cubic and
 //! not the solution; the stiffness varies inside it; Gauss's rule misses a load that is no polynomial, or the force of a
-//! curved law at its edge. Each is a small force or kink. How far a force here moves the beam anywhere follows from how
+//! curved law at its edge, and a gap's curvature. Each is a small force or kink. How far a force here moves the beam anywhere follows from how
 //! far the beam yields here to a uniform load (Maxwell and Betti).
 
 use crate::element::contact::parts;
 use crate::element::hermite::Motion;
 use crate::law::Compliance;
-use crate::profile::Profile;
+use crate::profile::{Profile, Smooth};
 use crate::quadrature::{POINTS, gauss, integrate};
 use crate::real::{Pair, Real};
 use crate::scene::Model;
@@ -55,10 +55,13 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
         let length = self.scene.length();
         let points = [0.0, 0.125, 0.25, 0.5, 0.75, 0.875, 1.0].map(T::of);
         let c = element.stiffness();
-        // The foundation's tangent stiffness, and what the cubic leaves of the load.
+        // The foundation's tangent stiffness, and what the penetration's cubic leaves of the load: C eta'''' is the net
+        // load less what bends the beam like the gap. Where both cancel the larger one is taken: they may do so by chance.
         let (mut stiffness, mut open) = (T::zero(), T::zero());
+        let gap = c * self.gap_bends();
         for t in points {
-            let net = self.net(t);
+            let loads = [self.net(t), self.net(t) - gap];
+            let net = if loads[1].abs() > loads[0].abs() { loads[1] } else { loads[0] };
             // Between its nodes the beam departs from the cubic; that may be where it touches.
             let room = t * (T::one() - t);
             let depth =
@@ -85,7 +88,7 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
             let layer = (T::of(4.0) * c / stiffness).sqrt().sqrt().min(length);
             weight = weight.max(layer.powi(3) / (T::of(8.0) * c));
         }
-        Share { error: (force + self.misjudged()) * weight + self.unevenness(), stiff }
+        Share { error: (force + self.misjudged()) * weight + self.unevenness() + self.gap_missed(), stiff }
     }
 
     /// By how much Gauss's rule misses the load and the force of a curved law: against the rule on halves \[N\].
@@ -104,6 +107,35 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
         self.element.h * sum
     }
 
+    /// s'''' in the element, by differences of s''.
+    fn gap_bends(&self) -> T {
+        if !M::Gap::PRESENT {
+            return T::zero();
+        }
+        let gap = self.scene.foundation().gap;
+        let curvature = |t: f64| gap.jet(self.element.x(T::of(t)), self.mid)[2];
+        let (middle, half) = (curvature(0.5), T::of(0.5) * self.element.h);
+        ((curvature(0.0) - middle) - (middle - curvature(1.0))) / (half * half)
+    }
+
+    /// By how much Gauss's rule misses the bend of a gap that is no polynomial, as a deflection.
+    fn gap_missed(&self) -> T {
+        if !M::Gap::PRESENT {
+            return T::zero();
+        }
+        let (h, gap, mid) = (self.element.h, self.scene.foundation().gap, self.mid);
+        let curvature = |t: T| gap.jet(self.element.x(t), mid)[2];
+        let turn = h * missed(T::zero(), T::one(), curvature);
+        let lift = h * h * missed(T::zero(), T::one(), |t| (T::one() - t) * curvature(t));
+        self.deflection(lift, turn)
+    }
+
+    /// How far a jump of the deflection by `lift` and a kink by `turn` move the beam.
+    fn deflection(&self, lift: T, turn: T) -> T {
+        // A kink moves the middle of a clamped beam by a quarter of what it would a cantilever's end.
+        lift.abs() + T::of(0.25) * self.scene.length() * turn.abs()
+    }
+
     /// What a stiffness that varies inside the element bends it otherwise than its cubic does, as a deflection: the
     /// curvature is the statical moment over the stiffness.
     fn unevenness(&self) -> T {
@@ -115,8 +147,7 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
         }
         let (turn, lift) = self.curvature(T::one());
         let apart = self.bend() - T::Vec2::of(lift, -turn);
-        // A kink moves the middle of a clamped beam by a quarter of what it would a cantilever's end.
-        apart.x().abs() + T::of(0.25) * self.scene.length() * apart.y().abs()
+        self.deflection(apart.x(), apart.y())
     }
 }
 

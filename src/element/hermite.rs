@@ -11,18 +11,18 @@
 
 use crate::cubic::Cubic;
 use crate::quadrature::{POINTS, add_moments, gauss};
-use crate::real::{Pair, Real};
+use crate::real::{Field, Pair, Real};
 use crate::sweep::pair::Symmetric;
 
 /// An element's motion: its cubic in t.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Motion<T: Real> {
+pub(crate) struct Motion<T: Field> {
     pub(crate) e: T::Vec2,
     pub(crate) d: T::Vec2,
     h: T,
 }
 
-impl<T: Real> Motion<T> {
+impl<T: Field> Motion<T> {
     #[inline(always)]
     pub(crate) fn new(h: T, e: T::Vec2, d: T::Vec2) -> Self {
         Self { e, d, h }
@@ -87,7 +87,7 @@ pub(crate) fn loads<T: Real>(h: T, f: [T; POINTS]) -> (T::Vec2, T::Vec2) {
 
 /// Work of a force per length on (e, d), from its moments: the integrals over t of f t^j, j = 0 .. 3.
 #[inline(always)]
-pub(crate) fn work<T: Real>(h: T, m: [T; 4]) -> (T::Vec2, T::Vec2) {
+pub(crate) fn work<T: Field>(h: T, m: [T; 4]) -> (T::Vec2, T::Vec2) {
     let (two, three) = (T::of(2.0), T::of(3.0));
     let e = T::Vec2::of(h * (three * m[2] - two * m[3]), h * h * (m[2] - m[3]));
     let d = T::Vec2::of(h * m[0], -(h * h * m[1]));

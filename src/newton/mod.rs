@@ -49,7 +49,7 @@ use crate::real::{Pair, Real, Sum};
 use crate::scene::Model;
 use crate::storage::{Node, Place, State, Work};
 use crate::sweep::pair::Bending;
-use crate::sweep::{Block, End, Stamp};
+use crate::sweep::{Block, Condensed, End, Factor, Stamp};
 use core::ops::Range;
 
 /// Differences between moments by deformation and by equilibrium, and what to compare them with.
@@ -68,6 +68,11 @@ pub(crate) struct Residual<T> {
 impl<T: Real> Residual<T> {
     fn none() -> Self {
         Self { mismatch: T::zero(), size: T::zero(), load: T::zero(), sum: T::zero() }
+    }
+
+    #[cfg(feature = "alloc")]
+    pub(crate) fn of(mismatch: T, size: T, load: T, sum: T) -> Self {
+        Self { mismatch, size, load, sum }
     }
 
     /// What an element's force and moment at one end are off by; h leads to its other end.
@@ -100,7 +105,13 @@ impl<T: Real> Residual<T> {
         }
     }
 
-    fn is_finite(&self) -> bool {
+    /// Is there no moment at all?
+    #[cfg(feature = "alloc")]
+    pub(crate) fn is_weightless(&self) -> bool {
+        self.size == T::zero()
+    }
+
+    pub(crate) fn is_finite(&self) -> bool {
         (self.mismatch + self.size + self.sum).is_finite()
     }
 }
@@ -811,7 +822,6 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     /// the meeting point.
     #[inline(never)]
     fn condense(&mut self, swept: Range<usize>, scale: T, solve: Solve<T>) -> Result<(), Halt> {
-        let Context { model, ref onto, .. } = *self.context;
         let scale = self.scaling(scale);
         let (mut left, mut right) = (self.context.left, self.context.right);
         if let Solve::Increment { open } = solve {
@@ -819,7 +829,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         }
         let step = solve != Solve::State;
         let whole = swept.len() == self.places.len();
-        let (current, meeting, last) = (self.current, self.meeting, self.places.len() - 1);
+        let meeting = self.meeting;
         let (mut from_left, mut from_right) = (swept.start.min(meeting), swept.end.max(meeting));
         let mut west = match self.places.get(..from_left).and_then(<[_]>::last) {
             Some(before) => before.work.condensed,
@@ -829,43 +839,64 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         // The two chains do not wait for each other, so they are interleaved.
         while from_left < meeting || from_right > meeting {
             if from_left < meeting {
-                let i = from_left;
-                let (before, Place { element, work }) = at(self.places, i).ok_or(Halt::Breakdown(i))?;
-                let before = before.map_or(self.node, |before| before.work.node);
-                let stamp = stamp(model, element, work, &before, current, onto, scale(i), step)
-                    .map_err(|fault| Halt::Law(i, fault))?;
-                let h = element.h;
-                if M::Gap::PRESENT && !step {
-                    west = west.shift(element.gap.kink::<T>());
-                }
-                let absorbed = if i == 0 { left.join(&west, &stamp, h) } else { west.absorb(&stamp, h) };
-                (west, work.factor) = absorbed.ok_or(Halt::Breakdown(i))?;
-                work.condensed = west;
+                west = self.absorb::<false>(from_left, west, &left, scale(from_left), step)?;
                 from_left += 1;
             }
             if from_right > meeting {
                 from_right -= 1;
-                let i = from_right;
-                if M::Gap::PRESENT
-                    && !step
-                    && let Some(next) = self.places.get(i + 1)
-                {
-                    east = east.shift(-next.element.gap.kink::<T>());
-                }
-                let (before, Place { element, work }) = at(self.places, i).ok_or(Halt::Breakdown(i))?;
-                let before = before.map_or(self.node, |before| before.work.node);
-                let stamp = stamp(model, element, work, &before, current, onto, scale(i), step)
-                    .map_err(|fault| Halt::Law(i, fault))?;
-                let h = element.h;
-                let stamp = stamp.mirrored(h);
-                let absorbed =
-                    if i == last { right.join(&east, &stamp, -h) } else { east.absorb(&stamp, -h) };
-                (east, work.factor) = absorbed.ok_or(Halt::Breakdown(i))?;
-                work.condensed = east;
+                east = self.absorb::<true>(from_right, east, &right, scale(from_right), step)?;
             }
         }
         self.fresh = !step && (self.fresh || whole);
         Ok(())
+    }
+
+    /// Condenses element i into the part on its left, `MIRRORED` on its right; an element at the beam's `end` into that.
+    ///
+    /// Most elements are free, or touch with one stiffness: these take the short way, without a call in it.
+    #[inline(always)]
+    fn absorb<const MIRRORED: bool>(
+        &mut self,
+        i: usize,
+        mut part: Condensed<T, Bending>,
+        end: &End<T, Bending>,
+        scale: T,
+        step: bool,
+    ) -> Result<Condensed<T, Bending>, Halt> {
+        let Context { model, ref onto, .. } = *self.context;
+        let (current, left) = (self.current, self.node);
+        if M::Gap::PRESENT && !step {
+            // The penetration's slope jumps at the node to the part.
+            if !MIRRORED {
+                part = part.shift(self.places.get(i).ok_or(Halt::Breakdown(i))?.element.gap.kink::<T>());
+            } else if let Some(next) = self.places.get(i + 1) {
+                part = part.shift(-next.element.gap.kink::<T>());
+            }
+        }
+        let ends = if MIRRORED { i + 1 == self.places.len() } else { i == 0 };
+        let (before, Place { element, work }) = at(self.places, i).ok_or(Halt::Breakdown(i))?;
+        let before = before.map_or(&left, |before| &before.work.node);
+        let State { e, d } = work.states[current];
+        let motion = Motion::new(element.h, e, d);
+        let q = onto.as_ref().map(|ratio| || electric::potential(element, before, &work.node, ratio));
+        work.touch = Touch::of(model, element, &motion.cubic(), q.as_ref());
+        let h = if MIRRORED { -element.h } else { element.h };
+        let short =
+            |contact: Contact<T>| part.absorb(&loaded::<_, _, MIRRORED>(&contact, element, work, step), h);
+        let absorbed = match work.touch {
+            Touch::Free if !ends => short(Contact::none()),
+            touch @ (Touch::Full | Touch::High | Touch::Low) if !ends => {
+                short(Contact::uniform(touch, touch.stiffness(model, element, scale)))
+            }
+            _ => {
+                let contact =
+                    Contact::at(model, element, &motion, q, scale).map_err(|fault| Halt::Law(i, fault))?;
+                join::<_, _, MIRRORED>(&contact, element, work, step, ends.then_some(end), &part)
+            }
+        };
+        let (next, factor) = absorbed.ok_or(Halt::Breakdown(i))?;
+        (work.condensed, work.factor) = (next, factor);
+        Ok(next)
     }
 
     /// The residual of the current state by statics, on all elements, with u and q of that state.
@@ -1031,27 +1062,40 @@ fn linearise<T: Real, M: Model<T>>(
     Contact::at(model, element, &motion, q, scale).map(|contact| (contact, motion))
 }
 
-/// The part of an element in the sweep for the state after one of its states; `step`: in that for an increment, which
-/// is loaded by what the element leaves open.
+/// The part of an element with the given contact in a sweep, `MIRRORED` in that from the right; `step`: in that for an
+/// increment, which is loaded by what the element leaves open.
 #[inline(always)]
-#[allow(clippy::too_many_arguments, reason = "what is known of one element, inlined")]
-fn stamp<T: Real, M: Model<T>>(
-    model: &M,
+fn loaded<T: Real, M: Model<T>, const MIRRORED: bool>(
+    contact: &Contact<T>,
     element: &Element<T, M>,
-    work: &mut Work<T, M>,
-    left: &Node<T, M>,
-    state: usize,
-    ratio: &Option<Ratio<T>>,
-    scale: T,
+    work: &Work<T, M>,
     step: bool,
-) -> Result<Stamp<T, Bending>, Fault> {
-    let (contact, _) = linearise(model, element, work, left, state, ratio, scale)?;
-    work.touch = contact.touch;
-    let mut stamp = contact.stamp(element);
+) -> Stamp<T, Bending> {
+    let mut stamp = if MIRRORED { contact.mirrored(element) } else { contact.stamp(element) };
     if step {
-        (stamp.fe, stamp.fr) = (-work.open, T::Vec2::default());
+        let open = -work.open;
+        stamp.fe = if MIRRORED { -Bending::carry_back(element.h, open) } else { open };
+        stamp.fr = T::Vec2::default();
     }
-    Ok(stamp)
+    stamp
+}
+
+/// Condenses an element with any contact, at an end of the beam or not.
+#[inline(never)]
+fn join<T: Real, M: Model<T>, const MIRRORED: bool>(
+    contact: &Contact<T>,
+    element: &Element<T, M>,
+    work: &Work<T, M>,
+    step: bool,
+    end: Option<&End<T, Bending>>,
+    part: &Condensed<T, Bending>,
+) -> Option<(Condensed<T, Bending>, Factor<T, Bending>)> {
+    let stamp = loaded::<_, _, MIRRORED>(contact, element, work, step);
+    let h = if MIRRORED { -element.h } else { element.h };
+    match end {
+        Some(end) => end.join(part, &stamp, h),
+        None => part.absorb(&stamp, h),
+    }
 }
 
 /// The larger of two sizes. (A maximum that treats NaN takes three instructions more.)

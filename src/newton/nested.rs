@@ -120,7 +120,10 @@ pub(super) fn clamp<T: Real, M: Model<T>>(model: &M, x: T, mid: T) -> End<T, cra
 }
 
 /// Both ends of the beam that was laid into `places`.
-fn ends<T: Real, M: Model<T>>(model: &M, places: &[Place<T, M>]) -> [End<T, crate::sweep::pair::Bending>; 2] {
+pub(crate) fn ends<T: Real, M: Model<T>>(
+    model: &M,
+    places: &[Place<T, M>],
+) -> [End<T, crate::sweep::pair::Bending>; 2] {
     let (length, half) = (model.length(), T::of(0.5));
     let h = |place: Option<&Place<T, M>>| place.map_or(length, |place| place.element.h);
     [
@@ -177,7 +180,7 @@ pub(crate) fn context<'a, T: Real, M: Model<T>>(
 /// The smallest size of moments to compare with. The unknown is the penetration: where a gap is large beside the
 /// bending, its rounding is a bending, too, and that of the moment that would bend the beam like the gap is in all
 /// moments. What a residual of `stop` leaves need not be less than that.
-fn quiet<T: Real, M: Model<T>>(model: &M, places: &[Place<T, M>], stop: T) -> T {
+pub(crate) fn quiet<T: Real, M: Model<T>>(model: &M, places: &[Place<T, M>], stop: T) -> T {
     if !M::Gap::PRESENT {
         return T::zero();
     }
@@ -195,6 +198,16 @@ fn quiet<T: Real, M: Model<T>>(model: &M, places: &[Place<T, M>], stop: T) -> T 
 pub(crate) fn budget<T: Real>(settings: &Settings<T>, elements: usize) -> Count {
     let most_visits = settings.max_visits.unwrap_or(400 * elements + 100_000);
     Count { iterations: 0, visits: 0, most_visits }
+}
+
+/// Do full steps from the free beam find the contact, without a continuation in the stiffness?
+#[cfg(feature = "alloc")]
+pub(crate) fn is_soft<T: Real, M: Model<T>>(model: &M, places: &[Place<T, M>]) -> bool {
+    let most = |of: &dyn Fn(&Element<T, M>) -> T| places.iter().fold(T::zero(), |m, p| m.max(of(&p.element)));
+    let law = model.foundation().law;
+    let stiffness = most(&|element| law.coefficient(element.x(T::of(0.5)), element.x(T::of(0.5))));
+    let soft = T::of(SOFT) * most(&Element::stiffness) / model.length().powi(4);
+    M::Law::LINEAR && stiffness <= soft && pressed(model, places) == [false; 2]
 }
 
 /// Is no more than rounding left?

@@ -49,10 +49,10 @@ pub(crate) mod fault;
 #[cfg(test)]
 mod oracle;
 
-use crate::real::Real;
+use crate::real::Field;
 
 /// The algebra of one nodal block: its vectors, its matrices, and how an element's rigid motion acts.
-pub(crate) trait Block<T: Real>: Copy {
+pub(crate) trait Block<T: Field>: Copy {
     /// Unknowns of a node.
     type Vector: Copy
         + Default
@@ -116,7 +116,7 @@ pub(crate) trait Block<T: Real>: Copy {
 
 /// One element's energy in (e, d_right): matrices and loads.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Stamp<T: Real, B: Block<T>> {
+pub(crate) struct Stamp<T: Field, B: Block<T>> {
     pub(crate) ee: B::Energy,
     pub(crate) er: B::Matrix,
     /// A_re where it is not the transposed of A_er; unused by symmetric blocks.
@@ -130,7 +130,7 @@ pub(crate) struct Stamp<T: Real, B: Block<T>> {
 
 /// All that lies to the left of a node: 1/2 d'S d - b'd.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Condensed<T: Real, B: Block<T>> {
+pub(crate) struct Condensed<T: Field, B: Block<T>> {
     pub(crate) s: B::Energy,
     pub(crate) b: B::Vector,
 }
@@ -138,14 +138,14 @@ pub(crate) struct Condensed<T: Real, B: Block<T>> {
 /// An end of the beam: some unknowns are held at a value, on the rest it acts as the energy
 /// 1/2 d'S d - b'd. A clamp holds all; a free end none, with no energy; springs are in S.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct End<T: Real, B: Block<T>> {
+pub(crate) struct End<T: Field, B: Block<T>> {
     pub(crate) held: B::Held,
     /// Values of the held unknowns; zero for the others.
     pub(crate) value: B::Vector,
     pub(crate) condensed: Condensed<T, B>,
 }
 
-impl<T: Real, B: Block<T>> End<T, B> {
+impl<T: Field, B: Block<T>> End<T, B> {
     /// The first element joins this end on its left; `before` is the end's energy.
     #[inline]
     pub(crate) fn join(
@@ -181,14 +181,14 @@ impl<T: Real, B: Block<T>> End<T, B> {
 
 /// What back substitution needs of an element: unknown = constant - gain d_right.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Factor<T: Real, B: Block<T>> {
+pub(crate) struct Factor<T: Field, B: Block<T>> {
     gain: B::Matrix,
     constant: B::Vector,
     /// The eliminated unknown is d_left instead of e.
     nodal: bool,
 }
 
-impl<T: Real, B: Block<T>> Stamp<T, B> {
+impl<T: Field, B: Block<T>> Stamp<T, B> {
     /// The element seen from its left node: its energy in (e^, d_left), to be swept over -h.
     #[inline(always)]
     pub(crate) fn mirrored(&self, h: T) -> Self {
@@ -211,31 +211,35 @@ impl<T: Real, B: Block<T>> Stamp<T, B> {
     }
 }
 
-impl<T: Real, B: Block<T>> Default for Condensed<T, B> {
+impl<T: Field, B: Block<T>> Default for Condensed<T, B> {
     fn default() -> Self {
         Self { s: B::NOTHING, b: B::Vector::default() }
     }
 }
 
-impl<T: Real, B: Block<T>> Default for Factor<T, B> {
+impl<T: Field, B: Block<T>> Default for Factor<T, B> {
     fn default() -> Self {
         Self { gain: B::NONE, constant: B::Vector::default(), nodal: false }
     }
 }
 
-impl<T: Real, B: Block<T>> Condensed<T, B> {
+impl<T: Field, B: Block<T>> Condensed<T, B> {
     /// The element to the right of this node joins; `None` if its pivot breaks down.
     #[inline(always)]
     pub(crate) fn absorb(&self, element: &Stamp<T, B>, h: T) -> Option<(Self, Factor<T, B>)> {
         #[cfg(test)]
         fault::strike()?;
+        if B::outweighs(&self.s, &element.ee) {
+            return self.absorb_nodal(*element, h);
+        }
+        self.absorb_relative(element, h)
+    }
+
+    /// The same where the part is no stiffer than the element, or not much.
+    #[inline(always)]
+    pub(crate) fn absorb_relative(&self, element: &Stamp<T, B>, h: T) -> Option<(Self, Factor<T, B>)> {
         let a = self.s + element.ee;
         let load = self.b + element.fe;
-        if B::outweighs(&self.s, &element.ee) {
-            let upper = upper::<T, B>(element, h);
-            let (gain, constant) = B::divide(&a, &upper, load)?;
-            return Some(Self::from_nodal(element, h, gain, constant));
-        }
         let mut right = B::carry_right(&self.s, h);
         let mut left = B::carry_left(&self.s, h, &right);
         let mut whole = B::congruence(&self.s, h);
@@ -248,6 +252,16 @@ impl<T: Real, B: Block<T>> Condensed<T, B> {
         let s = B::reduce(&whole, &left, &gain);
         let b = B::carry_back(h, self.b) + element.fr - B::times(&left, constant);
         Some((Self { s, b }, Factor { gain, constant, nodal: false }))
+    }
+
+    /// The same with d_left as the eliminated unknown. By value, and out of line: it is rare, and the rest is to stay in
+    /// registers.
+    #[cold]
+    #[inline(never)]
+    fn absorb_nodal(self, element: Stamp<T, B>, h: T) -> Option<(Self, Factor<T, B>)> {
+        let (a, upper) = (self.s + element.ee, upper::<T, B>(&element, h));
+        let (gain, constant) = B::divide(&a, &upper, self.b + element.fe)?;
+        Some(Self::from_nodal(&element, h, gain, constant))
     }
 
     /// The unknowns of the node between this part and `other`.
@@ -277,11 +291,25 @@ impl<T: Real, B: Block<T>> Condensed<T, B> {
 
 /// U = A_er - A_ee T
 #[inline]
-fn upper<T: Real, B: Block<T>>(element: &Stamp<T, B>, h: T) -> B::Matrix {
+fn upper<T: Field, B: Block<T>>(element: &Stamp<T, B>, h: T) -> B::Matrix {
     element.er + B::negate(&B::carry_right(&element.ee, h))
 }
 
-impl<T: Real, B: Block<T>> Factor<T, B> {
+impl<T: Field, B: Block<T>> Factor<T, B> {
+    /// From its parts, as [`Factor::parts`] gives them.
+    #[cfg(feature = "alloc")]
+    #[inline(always)]
+    pub(crate) fn of((gain, constant, nodal): (B::Matrix, B::Vector, bool)) -> Self {
+        Self { gain, constant, nodal }
+    }
+
+    /// Its parts, for who stores them apart.
+    #[cfg(feature = "alloc")]
+    #[inline(always)]
+    pub(crate) fn parts(self) -> (B::Matrix, B::Vector, bool) {
+        (self.gain, self.constant, self.nodal)
+    }
+
     /// (e, d_left) of the element whose right node moves by `d`.
     #[inline(always)]
     pub(crate) fn substitute(&self, d: B::Vector, h: T) -> (B::Vector, B::Vector) {

@@ -1,7 +1,7 @@
 //! The symmetric 2x2 block of bending: unknowns (w, theta), rigid motion T = [[1, -h], [0, 1]].
 
 use super::{Block, Factor, Stamp};
-use crate::real::{Pair, Real, Square};
+use crate::real::{Field, Pair, Square};
 use core::ops::Add;
 
 /// A symmetric 2x2 matrix, three numbers: rounding cannot make it unsymmetric.
@@ -12,7 +12,7 @@ pub(crate) struct Symmetric<T> {
     pub(crate) yy: T,
 }
 
-impl<T: Real> Symmetric<T> {
+impl<T: Field> Symmetric<T> {
     pub(crate) const fn of(xx: T, xy: T, yy: T) -> Self {
         Self { xx, xy, yy }
     }
@@ -26,24 +26,21 @@ impl<T: Real> Symmetric<T> {
     /// conducting foundation at a negative potential pulls.
     #[inline(always)]
     pub(crate) fn inverse(&self) -> Option<Self> {
-        let det = self.xx * self.yy - self.xy * self.xy;
-        let scale = T::one() / det;
         // Away from the ends of the range the determinant says it all.
-        let inside = |x: T| x.abs() >= T::min_positive_value() && x.abs() <= T::max_value();
-        if inside(det) && inside(scale) {
-            return Some(Self::of(self.yy * scale, -self.xy * scale, self.xx * scale));
+        match (self.xx * self.yy - self.xy * self.xy).reciprocal() {
+            Some(scale) => Some(Self::of(self.yy * scale, -self.xy * scale, self.xx * scale)),
+            None => self.inverse_by_pivots(),
         }
-        self.inverse_by_pivots()
     }
 
     /// The inverse by two pivots, which neither over- nor underflows where its result does not.
     #[cold]
     fn inverse_by_pivots(&self) -> Option<Self> {
-        let ratio = self.xy / self.xx;
-        let yy = T::one() / (self.yy - ratio * self.xy);
+        let (one, ratio) = (T::of(1.0), self.xy / self.xx);
+        let yy = one / (self.yy - ratio * self.xy);
         let xy = -ratio * yy;
-        let xx = T::one() / self.xx - ratio * xy;
-        (xx.is_finite() && yy.is_finite() && xy.is_finite()).then_some(Self::of(xx, xy, yy))
+        let xx = one / self.xx - ratio * xy;
+        (xx.is_number() && yy.is_number() && xy.is_number()).then_some(Self::of(xx, xy, yy))
     }
 
     #[inline(always)]
@@ -52,7 +49,7 @@ impl<T: Real> Symmetric<T> {
     }
 }
 
-impl<T: Real> Add for Symmetric<T> {
+impl<T: Field> Add for Symmetric<T> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -64,7 +61,7 @@ impl<T: Real> Add for Symmetric<T> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bending;
 
-impl<T: Real> Factor<T, Bending> {
+impl<T: Field> Factor<T, Bending> {
     /// After back substitution a factor is spent: its room can hold four numbers.
     #[inline(always)]
     pub(crate) fn keep(&mut self, [a, b, c, d]: [T; 4]) {
@@ -79,7 +76,7 @@ impl<T: Real> Factor<T, Bending> {
     }
 }
 
-impl<T: Real> Block<T> for Bending {
+impl<T: Field> Block<T> for Bending {
     type Vector = T::Vec2;
     type Matrix = T::Mat2;
     type Energy = Symmetric<T>;
@@ -154,8 +151,8 @@ impl<T: Real> Block<T> for Bending {
 
     #[inline]
     fn divide_free(a: &Symmetric<T>, b: &T::Mat2, v: T::Vec2, held: [bool; 2]) -> Option<(T::Mat2, T::Vec2)> {
-        let zero = T::zero();
-        let single = |pivot: T| (pivot != zero && pivot.is_finite()).then(|| T::one() / pivot);
+        let zero = T::ZERO;
+        let single = |pivot: T| (pivot != zero && pivot.is_number()).then(|| T::of(1.0) / pivot);
         let inverse = match held {
             [false, false] => a.inverse()?,
             [true, false] => Symmetric::of(zero, zero, single(a.yy)?),
@@ -199,6 +196,6 @@ impl<T: Real> Block<T> for Bending {
     fn outweighs(s: &Symmetric<T>, element: &Symmetric<T>) -> bool {
         // Uniform meshes never come here: next to a clamp S is the element's own stiffness and falls from
         // there. Deflections matter too, where the element is stiff enough to hide the leap in rotation.
-        s.yy > T::of(8.0) * element.yy || s.xx > T::of(512.0) * element.xx
+        s.yy.exceeds(T::of(8.0) * element.yy) || s.xx.exceeds(T::of(512.0) * element.xx)
     }
 }

@@ -41,6 +41,9 @@ pub const COUPLED_VISITS: (usize, usize) = (400, 20_000);
 /// Fields from a warm and from a cold start: two states with residuals up to 1e-10 each.
 pub const HISTORY: f64 = 1e-8;
 
+/// Fields of a scene in a batch and alone: two states with residuals up to 1e-10 each, one of which may be refined.
+pub const BATCH: f64 = 1e-8;
+
 /// Nodal error over the maximum for the free beam at any N up to a million: a few roundings per node carried
 /// along, of which the relative unknowns keep the sum bounded.
 pub const FREE: f64 = 1e-12;

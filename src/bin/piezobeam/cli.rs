@@ -20,6 +20,7 @@ Examples:
   piezobeam solve beam.toml --format json | jq .contact.force
   piezobeam sweep beam.toml --vary foundation.stiffness=log:1e0:1e16:17 --out k.csv
   piezobeam paper --out paper                     the figures of the paper, recomputed
+  piezobeam report --quick                        errors, run times, the paper's figures: one page
   piezobeam extremes --quick                      does it hold at the edges of what can be asked?
 
 Exit status:
@@ -67,6 +68,15 @@ Examples:
 
 Exit status 1: a row is wrong, that is, it did not end as the table says that it should.";
 
+const REPORT: &str = "\
+Example:
+  piezobeam report --quick --out report
+
+Writes report.html, which loads nothing from elsewhere, and the numbers of each picture and table as CSV. The full report
+takes some minutes; times are those of this machine.
+
+Exit status 1: something that is said does not hold, or a part has no data.";
+
 /// Static equilibrium of a piezoelectric beam, clamped at both ends, on a deformable foundation.
 #[derive(Debug, Parser)]
 #[command(name = "piezobeam", version, about, after_help = EXAMPLES, max_term_width = 110)]
@@ -89,10 +99,8 @@ pub enum Command {
     /// Recompute the examples of the paper and draw its figures as SVG files
     #[command(after_help = "Example:\n  piezobeam paper --out figures --force")]
     Paper(PaperArgs),
-    /// Compute anew what is said of the paper, as a document with pictures
-    #[command(
-        after_help = "Example:\n  piezobeam report --quick --out report\n\nExit status 1: something does not hold."
-    )]
+    /// Compute anew what is said of errors, run times, the paper and stability: one page, and its data
+    #[command(after_help = REPORT)]
     Report(ReportArgs),
     /// Measure how long a scene takes to solve
     #[command(after_help = "Example:\n  piezobeam time beam.toml --elements 10000 --repeat 20 --format json")]
@@ -242,7 +250,7 @@ pub struct ReportArgs {
     /// Leave out what takes more than some seconds
     #[arg(long)]
     pub quick: bool,
-    /// Directory for the document and its pictures; made if it is not there
+    /// Directory for the page and its data; made if it is not there
     #[arg(long, value_name = "DIR", default_value = "report")]
     pub out: PathBuf,
     /// Replace output files that exist

@@ -154,14 +154,25 @@ fn paper(args: &PaperArgs) -> Outcome {
 }
 
 fn report(args: &ReportArgs) -> Outcome {
-    let chapters::Document { files, summary, holds } = chapters::run(args.quick, &args.out)?;
+    // Before minutes of work: the page is the first file that would be refused.
+    output::check(&args.out.join("report.html"), args.force)?;
+    let bar = progress(0, "steps");
+    let document = chapters::run(args.quick, &bar)?;
+    bar.finish_and_clear();
+    let files = document.files(&args.out);
     for (path, _) in &files {
         output::check(path, args.force)?;
-        output::make_directory(path.parent().unwrap_or(&args.out))?;
     }
+    output::make_directory(&args.out)?;
     output::write_all(&files, args.force)?;
-    output::print(&format!("{summary}\n{} files in {}\n", files.len(), output::shown(&args.out)))?;
-    Ok(holds)
+    let page = args.out.join("report.html");
+    output::print(&format!(
+        "{}\n{} and {} files beside it\n",
+        document.summary(),
+        output::shown(&page),
+        files.len() - 1
+    ))?;
+    Ok(document.holds())
 }
 
 fn time(args: &TimeArgs) -> Outcome {

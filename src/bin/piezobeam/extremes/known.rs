@@ -33,19 +33,24 @@ pub(super) fn halves_free(c: f64, f: f64) -> Reference {
     bending("closed form", move |x| if x < 0.5 { half(x) } else { -half(1.0 - x) })
 }
 
-/// The same load over a rigid foundation: at rest on it from 0 to a, where a concentrated force acts; from there
-/// to the right clamp l = 1 - a satisfies l^4 - l + 3/8 = 0.
+/// The same load over a rigid foundation.
 pub(super) fn halves_rigid(c: f64, f: f64) -> Reference {
+    bending("rigid limit", rigid_halves(c, f))
+}
+
+/// Bending of a beam of length 1 under f on the left half and -f on the right, over a rigid foundation: at rest on it from
+/// 0 to a, where a concentrated force acts; from there to the right clamp l = 1 - a satisfies l^4 - l + 3/8 = 0.
+pub fn rigid_halves(c: f64, f: f64) -> impl Fn(f64) -> f64 {
     let mut l = 0.8_f64;
     for _ in 0..50 {
         l -= (l.powi(4) - l + 0.375) / (4.0 * l.powi(3) - 1.0);
     }
     let shear = (0.25 - l.powi(3)) / (3.0 * l * l);
-    bending("rigid limit", move |x| {
+    move |x| {
         let y = (x - (1.0 - l)).max(0.0);
         let turned = (x - 0.5).max(0.0);
         f / c * (shear * y.powi(3) / 6.0 + y.powi(4) / 24.0 - turned.powi(4) / 12.0)
-    })
+    }
 }
 
 /// Of length 1, pressed onto a foundation so stiff that the layers at both clamps do not see each other.

@@ -11,6 +11,7 @@ mod scenes;
 
 use crate::cli::Precision;
 use crate::scene_file::SceneFile;
+pub use known::rigid_halves;
 use serde::Serialize;
 
 /// Meshes of more elements are left out of a quick run.

@@ -54,17 +54,41 @@ const DARK: [(RGBColor, &str); 12] = [
     (BAND, "#2f6388"),
 ];
 
+/// What all pictures look like: a page that has one needs it once. Text carries an outline of the page's colour, so
+/// that a label crossed by a line stays readable.
+pub fn style_sheet() -> String {
+    format!(
+        "svg text {{ paint-order: stroke; stroke: #fff; stroke-width: {}px; stroke-linejoin: round }} \
+         polyline {{ stroke-linejoin: round }}\n{}",
+        3 * FINE,
+        dark()
+    )
+}
+
 /// The style rules with which a page is dark where the reader's screen is.
 fn dark() -> String {
     let rules = DARK.map(|(RGBColor(r, g, b), dark)| {
         let light = format!("#{r:02X}{g:02X}{b:02X}");
         format!("[fill=\"{light}\"] {{ fill: {dark} }} [stroke=\"{light}\"] {{ stroke: {dark} }}\n")
     });
-    format!("@media (prefers-color-scheme: dark) {{\ntext {{ stroke: #16191d }}\n{}}}\n", rules.concat())
+    format!("@media (prefers-color-scheme: dark) {{\nsvg text {{ stroke: #16191d }}\n{}}}\n", rules.concat())
 }
 
 /// A white page of `width` by `height` pixels; `name` is its title for browsers and screen readers, plain words.
 pub fn page(name: &'static str, width: i32, height: i32, draw: impl FnOnce(&Area) -> Drawn) -> String {
+    alone(&part(name, width, height, draw))
+}
+
+/// A picture that is part of a page, as a file of its own.
+pub fn alone(part: &str) -> String {
+    match part.split_once('\n') {
+        Some((head, body)) => format!("{head}\n<style>{}</style>\n{body}", style_sheet()),
+        None => part.to_owned(),
+    }
+}
+
+/// As [`page`], without [`style_sheet`].
+pub fn part(name: &str, width: i32, height: i32, draw: impl FnOnce(&Area) -> Drawn) -> String {
     let mut svg = String::new();
     let size = ((width * FINE) as u32, (height * FINE) as u32);
     let root = SVGBackend::with_string(&mut svg, size).into_drawing_area();
@@ -75,18 +99,16 @@ pub fn page(name: &'static str, width: i32, height: i32, draw: impl FnOnce(&Area
     drop(root);
     let drawn = format!("width=\"{}\" height=\"{}\"", size.0, size.1);
     let shown = format!("width=\"{width}\" height=\"{height}\" role=\"img\"");
-    // Text carries an outline of the page's colour, so that a label crossed by a line stays readable.
-    let style = format!(
-        "<title>{name}</title>\n<style>text {{ paint-order: stroke; stroke: #fff; stroke-width: {}px; \
-         stroke-linejoin: round }} polyline {{ stroke-linejoin: round }}\n{}</style>\n",
-        3 * FINE,
-        dark()
-    );
     let svg = svg.replacen(&drawn, &shown, 1);
     match svg.split_once('\n') {
-        Some((head, body)) => format!("{head}\n{style}{body}"),
+        Some((head, body)) => format!("{head}\n<title>{}</title>\n{body}", escaped(name)),
         None => svg,
     }
+}
+
+/// `text` between tags.
+fn escaped(text: &str) -> String {
+    printable(text).replace('&', "&amp;").replace('<', "&lt;")
 }
 
 /// A line of text: size in pixels, colour, and which point of the text is at the given place.
@@ -142,13 +164,16 @@ pub fn wrapped(text: &str, width: usize) -> Vec<String> {
 
 /// `text` as it is printed: minus signs, and small whole powers raised.
 pub fn typeset(text: &str) -> String {
-    let minus = text.replace(" -", " −").replace("e-", "e−").replace("[-", "[−");
+    let exponent = |minus: String, digit: char| minus.replace(&format!("{digit}e-"), &format!("{digit}e−"));
+    let minus = text.replace(" -", " −").replace("[-", "[−");
+    let minus = ('0'..='9').fold(minus, exponent);
     let minus = minus.strip_prefix('-').map_or(minus.clone(), |rest| format!("−{rest}"));
     let mut out = String::new();
     let mut parts = minus.split('^');
     out += parts.next().unwrap_or_default();
     for part in parts {
-        let alone = !part[1.min(part.len())..].starts_with(|c: char| c.is_ascii_digit() || c == '.');
+        let after = part[1.min(part.len())..].trim_start_matches('.');
+        let alone = !after.starts_with(|c: char| c.is_ascii_digit());
         match part.chars().next().filter(|_| alone) {
             Some('2') => out = out + "²" + &part[1..],
             Some('3') => out = out + "³" + &part[1..],
@@ -156,6 +181,54 @@ pub fn typeset(text: &str) -> String {
         }
     }
     out
+}
+
+/// As [`typeset`], with powers of ten raised: 3e-12 is 3·10⁻¹².
+pub fn scientific(text: &str) -> String {
+    let mut out = String::new();
+    let mut rest = text;
+    while let Some(at) = rest.find('e') {
+        let (before, after) = (&rest[..at], &rest[at + 1..]);
+        let number = before
+            .rfind(|c: char| !c.is_ascii_digit() && c != '.')
+            .map_or(0, |i| i + before[i..].chars().next().map_or(0, char::len_utf8));
+        let digits = after.find(|c: char| !c.is_ascii_digit() && c != '-').unwrap_or(after.len());
+        let mantissa = &before[number..];
+        match after[..digits].parse() {
+            Ok(exponent) if mantissa.starts_with(|c: char| c.is_ascii_digit()) => {
+                out += &before[..number];
+                if mantissa != "1" {
+                    out = out + mantissa + "·";
+                }
+                out += &power_of_ten(exponent);
+                rest = &after[digits..];
+            }
+            _ => {
+                out += &rest[..=at];
+                rest = after;
+            }
+        }
+    }
+    typeset(&(out + rest))
+}
+
+/// 1, 10, 100, else raised: 10³, 10⁻⁶.
+pub fn power_of_ten(exponent: i32) -> String {
+    match exponent {
+        0 => "1".into(),
+        1 => "10".into(),
+        2 => "100".into(),
+        _ => {
+            let raised = |c: char| match c {
+                '-' => '⁻',
+                '1' => '¹',
+                '2' => '²',
+                '3' => '³',
+                digit => char::from_u32(0x2070 + digit.to_digit(10).unwrap_or(0)).unwrap_or(digit),
+            };
+            format!("10{}", exponent.to_string().chars().map(raised).collect::<String>())
+        }
+    }
 }
 
 /// Axes and a title above them; `colour` draws a sample of the line the title names.
@@ -369,6 +442,10 @@ mod tests {
         assert_eq!(typeset("-1e-5 N m^2/V^2"), "−1e−5 N m²/V²");
         assert_eq!(typeset("1e8 N/m^2.5, -2 x^10 + x^3"), "1e8 N/m^2.5, −2 x^10 + x³");
         assert_eq!(typeset("x^"), "x^");
+        assert_eq!(typeset("re-entrant, 3e-4"), "re-entrant, 3e−4");
+        assert_eq!(typeset("N/m^2. And m^3..."), "N/m². And m³...");
+        assert_eq!(scientific("from 1e8 N/m^2 to 2.5e-12, -1e-3"), "from 10⁸ N/m² to 2.5·10⁻¹², −10⁻³");
+        assert_eq!(scientific("the 3 elements, 4e, x1 e5, ξ = 1e0 m"), "the 3 elements, 4e, x1 e5, ξ = 1 m");
     }
 
     #[test]

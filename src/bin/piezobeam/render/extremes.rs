@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use comfy_table::{CellAlignment, Table, presets};
 
-use super::{significant, text::lines};
+use super::{capital, significant, text::lines};
 use crate::extremes::{Extremes, Row, Verdict};
 
 const HEADER: [&str; 10] =
@@ -90,11 +90,6 @@ fn cells(row: &Row) -> [String; 10] {
         visits,
         row.verdict.name().into(),
     ]
-}
-
-fn capital(name: &str) -> String {
-    let mut letters = name.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
 #[cfg(test)]

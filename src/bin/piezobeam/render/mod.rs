@@ -9,8 +9,10 @@ pub mod extremes;
 pub mod figures;
 #[cfg(test)]
 pub mod fixture;
+pub mod html;
 pub mod json;
 pub mod overview;
+pub mod plot;
 pub mod sweep;
 pub mod text;
 
@@ -124,6 +126,12 @@ impl Scale {
 /// A number of things.
 fn counted(n: usize, noun: &str) -> String {
     format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
+}
+
+/// `text` with a capital first letter.
+pub fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// `value` (SI) with a prefix of its own.
