@@ -285,6 +285,10 @@ fn bytes_that_are_no_text_are_refused() {
         "2: a NUL character stands here; a scene is plain text, save the file anew"
     );
     assert_eq!(complaint(b""), "the file is empty; a scene has at least length and [beam] with bending");
+    assert_eq!(
+        complaint("length = 1\nbeam.bending = 1_2\u{2}\n"),
+        "2: beam.bending: expected a number, found the number 12\\u{2}"
+    );
     let escaped = complaint("\"\\u001b[31mlen\\u202egth\" = 1\n");
     assert!(escaped.starts_with("1: \\u{1b}[31mlen\\u{202e}gth: unknown key; "), "{escaped}");
 }

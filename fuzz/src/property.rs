@@ -63,8 +63,16 @@ pub fn check<T: Real, M: Model<T> + Debug>(scene: M, mesh: Mesh<'_, T>, settings
         assert!(last <= a && a <= b && b <= length, "zones: {a:?} to {b:?} after {last:?}\n{}", said());
         last = b;
     }
-    // The unknown is the penetration: of a gap this large it has no digit left for the bending.
-    if fields.iter().any(|f| f.gap.is_some_and(|gap| gap.abs() * T::epsilon() > length)) {
+    // The unknown is the penetration: of a gap this large it has no digit left for the bending. And below the normal
+    // numbers a coefficient has none, and no inverse.
+    let beam = problem.scene().beam();
+    let faint = |value: T| value > T::zero() && value < T::min_positive_value();
+    let lost = |f: &Fields<T>| {
+        f.gap.is_some_and(|gap| gap.abs() * T::epsilon() > length)
+            || faint(beam.axial.value(f.x, f.x))
+            || faint(beam.permittivity.value(f.x, f.x))
+    };
+    if fields.iter().any(lost) {
         return;
     }
     for f in fields {

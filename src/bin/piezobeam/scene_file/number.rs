@@ -34,7 +34,11 @@ pub(super) fn finite(value: &DeValue<'_>) -> Result<f64, Problem> {
         Some(0.0) if vanishes(text) => Err(Problem::TooSmall(cut(text))),
         Some(number) if f64::is_finite(number) => Ok(number),
         Some(_) if text.contains("inf") || text.contains("nan") => Err(Problem::NotFinite(text.to_owned())),
-        _ => Err(Problem::TooLarge(cut(text))),
+        // The parser of TOML lets characters pass after an underscore that belong to no number.
+        _ if text.chars().all(|c| c.is_ascii_hexdigit() || "+-.".contains(c)) => {
+            Err(Problem::TooLarge(cut(text)))
+        }
+        _ => Err(Problem::NotANumber),
     }
 }
 
@@ -77,6 +81,7 @@ mod tests {
         for text in ["true", "\"1\"", "[1]", "{a = 1}", "2024-01-01"] {
             assert_eq!(of(text), Err(Problem::NotANumber), "{text}");
         }
+        assert_eq!(of("1_2\u{2}"), Err(Problem::NotANumber));
         for text in ["inf", "-inf", "+inf", "nan", "-nan"] {
             assert_eq!(of(text), Err(Problem::NotFinite(text.into())), "{text}");
         }

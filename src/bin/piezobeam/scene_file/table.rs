@@ -4,7 +4,7 @@
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
-use super::error::{FileError, cut, quoted};
+use super::error::{FileError, cut, printable, quoted};
 use super::lines::{LineStarts, joined};
 use super::{number, suggestion};
 
@@ -182,8 +182,8 @@ impl<'a> Field<'a> {
 fn described(value: &DeValue<'_>) -> String {
     match value {
         DeValue::String(text) => format!("the text {}", quoted(text)),
-        DeValue::Integer(integer) => format!("the number {}", cut(&integer.to_string())),
-        DeValue::Float(float) => format!("the number {}", cut(float.as_str())),
+        DeValue::Integer(integer) => format!("the number {}", printable(&cut(&integer.to_string()))),
+        DeValue::Float(float) => format!("the number {}", printable(&cut(float.as_str()))),
         DeValue::Boolean(truth) => format!("the boolean {truth}"),
         DeValue::Datetime(_) => "a date or time".to_owned(),
         DeValue::Array(array) => match array.len() {
