@@ -221,8 +221,10 @@ impl<T: Real> Cubic<T> {
             let step = (newton - t).abs();
             let inside = newton > low && newton < high;
             let noise = T::of(0.5) * T::epsilon() * (c0 + t * (c1 + t * (c2 + t * c3)));
-            if value.abs() <= noise || (inside && bend * step * step <= noise) {
-                return if inside { newton } else { t };
+            // Where the slope is rounding, too, the step leads anywhere.
+            let lands = inside && bend * step * step <= noise;
+            if lands || value.abs() <= noise {
+                return if lands { newton } else { t };
             }
             let next =
                 if inside && step < T::of(0.5) * last_step { newton } else { T::of(0.5) * (low + high) };
@@ -263,6 +265,19 @@ mod tests {
         assert!(Cubic([0.25, -1.0, 1.0, 0.0]).crossings(0.0).len() % 2 == 0);
         assert!(Cubic([f64::NAN, 1.0, 0.0, 0.0]).crossings(0.0).is_empty());
         assert!(Cubic([0.0; 4]).crossings(0.0).is_empty());
+    }
+
+    #[test]
+    fn a_triple_root_whose_slope_is_rounding_is_where_it_is() {
+        // k (t - 1/2)^3, rounded: bisection begins at the root.
+        for cubic in [
+            Cubic([-0.12638409443077228, 0.7583042575251655, -1.5166078969313945, 1.0110715192083057]),
+            Cubic([-0.8017114172664475, 4.8102681705956405, -9.62053567518519, 6.413690006119402]),
+            Cubic([-0.9042995900153832, 5.425800143449218, -10.851605493612283, 7.234407133550756]),
+        ] {
+            let roots = cubic.crossings(0.0);
+            assert!(roots.iter().all(|t: &f64| (t - 0.5).abs() < 1e-4), "{roots:?} of {cubic:?}");
+        }
     }
 
     proptest! {
