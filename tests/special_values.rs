@@ -177,7 +177,7 @@ fn three_at_a_time_in_single_precision() {
 
 /// `cargo test --release --test special_values -- --ignored four`
 #[test]
-#[ignore = "hours"]
+#[ignore = "33 times as many as three at a time: some 15 minutes"]
 fn four_at_a_time() {
     judge_all::<f64>(4);
 }

@@ -64,11 +64,13 @@ pub fn check<T: Real, M: Model<T> + Debug>(scene: M, mesh: Mesh<'_, T>, settings
         last = b;
     }
     // The unknown is the penetration: of a gap this large it has no digit left for the bending. And below the normal
-    // numbers a coefficient has none, and no inverse.
-    let beam = problem.scene().beam();
+    // numbers a coefficient has none, and no inverse. Profiles are checked where they are sampled, not at all ends.
+    let (beam, law) = (problem.scene().beam(), problem.scene().foundation().law);
     let faint = |value: T| value > T::zero() && value < T::min_positive_value();
     let lost = |f: &Fields<T>| {
         f.gap.is_some_and(|gap| gap.abs() * T::epsilon() > length)
+            || law.coefficient(f.x, f.x) < T::zero()
+            || faint(beam.bending.value(f.x, f.x))
             || faint(beam.axial.value(f.x, f.x))
             || faint(beam.permittivity.value(f.x, f.x))
     };
