@@ -456,7 +456,8 @@ fn few() -> Group {
     let point = elastic(C).on(1e8).gap(1.0).under(F);
     let pressed = |k: f64| Case::new(format!("k = {k:.0e}, pressed down"), elastic(C).on(k).under(F)).on(&on);
     let split = |k: f64| Case::new(format!("k = {k:.0e}, turned load"), halves(k)).on(&on[1..]);
-    let (soft, stiff, rigid) = (split(1e4), split(1e8), split(1e30));
+    let (per_element, beside) = beyond(1e30);
+    let (soft, stiff, rigid) = (split(1e4), split(1e8), split(1e30).visits(per_element, beside));
     Group {
         name: "one, two, three elements",
         comment: "One element clamped at both ends has no unknown at all; its fields follow from equilibrium. With \
