@@ -298,8 +298,13 @@ pub(crate) fn solve<T: Real, M: Model<T>>(
     if rigid {
         count.most_visits = most.min(share);
     }
-    let answer = descend(model, places, levels, settings, &mut count)?;
-    if !rigid || answer.report.is_solved() || most < 2 * share {
+    let mut answer = descend(model, places, levels, settings, &mut count)?;
+    let report = &mut answer.report;
+    if rigid && share < most && report.status == Status::VisitLimit && report.residual <= report.floor {
+        // The share was spent on nothing but rounding: the contact is found.
+        report.status = Status::ToleranceBelowFloor;
+    }
+    if !rigid || report.is_solved() || most < 2 * share {
         return Ok(answer);
     }
     count.most_visits = most;
