@@ -111,7 +111,6 @@ pub(crate) enum Tangent {
 /// The contact force of an element, linearised at its state: tangent . motion - offset.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Contact<T> {
-    pub(crate) touch: Touch,
     force: Integrals<T>,
 }
 
@@ -151,12 +150,11 @@ impl<T: Real> Contact<T> {
         match touch {
             Touch::Free => Ok(Self::none()),
             Touch::Full | Touch::High | Touch::Low => {
-                Ok(Self::uniform(touch, touch.stiffness(model, element, scale)))
+                Ok(Self::uniform(touch.stiffness(model, element, scale)))
             }
             Touch::Edge | Touch::Mixed => {
                 let q = q.filter(|_| element.conducts_onto()).map(|q| q());
-                let split = Self::split(model, element, &eta, q.as_ref(), scale, Tangent::Whole)?;
-                Ok(Self { touch, ..split })
+                Self::split(model, element, &eta, q.as_ref(), scale, Tangent::Whole)
             }
         }
     }
@@ -164,13 +162,13 @@ impl<T: Real> Contact<T> {
     /// No contact.
     #[inline(always)]
     pub(crate) fn none() -> Self {
-        Self { touch: Touch::Free, force: Integrals::None }
+        Self { force: Integrals::None }
     }
 
     /// Contact everywhere, with one stiffness.
     #[inline(always)]
-    pub(crate) fn uniform(touch: Touch, stiffness: T) -> Self {
-        Self { touch, force: Integrals::Uniform(stiffness) }
+    pub(crate) fn uniform(stiffness: T) -> Self {
+        Self { force: Integrals::Uniform(stiffness) }
     }
 
     /// As [`Contact::at`], with [`Tangent::Nondecreasing`].
@@ -193,7 +191,7 @@ impl<T: Real> Contact<T> {
             add_moments(&mut stiffness, T::of(t), T::of(weight) * tangent);
             add_moments(&mut offset, T::of(t), T::of(weight) * part);
         }
-        Self { touch: Touch::Mixed, force: Integrals::Moments { stiffness, offset } }
+        Self { force: Integrals::Moments { stiffness, offset } }
     }
 
     /// The same by quadrature between the kinks, whatever the touch.
@@ -214,7 +212,7 @@ impl<T: Real> Contact<T> {
         if let (true, Some(k), None) = (M::Law::LINEAR, element.law.constant(), q) {
             parts_touching(eta, &mut splits)
                 .for_each(|(from, to)| add_powers(&mut stiffness, from, to, scale * k));
-            return Ok(Self { touch: Touch::Mixed, force: Integrals::Moments { stiffness, offset } });
+            return Ok(Self { force: Integrals::Moments { stiffness, offset } });
         }
         touching(eta, &mut splits).try_for_each(|(t, weight)| {
             let r = eta.at(t);
@@ -241,7 +239,7 @@ impl<T: Real> Contact<T> {
             add_moments(&mut offset, t, weight * (tangent * r - force));
             Ok(())
         })?;
-        Ok(Self { touch: Touch::Mixed, force: Integrals::Moments { stiffness, offset } })
+        Ok(Self { force: Integrals::Moments { stiffness, offset } })
     }
 
     /// The element's energy in (e, d): bending about the gap's own bend, loads, and this contact.
@@ -270,7 +268,7 @@ impl<T: Real> Contact<T> {
     pub(crate) fn mirrored<M: Model<T>>(&self, element: &Element<T, M>) -> Stamp<T, Bending> {
         let h = element.h;
         let Integrals::Uniform(k) = self.force else { return self.stamp(element).mirrored(h) };
-        let free = Self { touch: self.touch, force: Integrals::None }.stamp(element).mirrored(h);
+        let free = Self::none().stamp(element).mirrored(h);
         let (ee, er, rr) = uniform::<T>(k * h, -h);
         Stamp { ee: free.ee + ee, er, rr, free: false, ..free }
     }
@@ -707,7 +705,7 @@ mod tests {
             for (touch, level) in [(Touch::High, 1.0), (Touch::Low, -1.0)] {
                 let q = Cubic([level * (height + 1e-9), level * 0.3, level * 0.2, level * 0.1]);
                 let closed = Contact::at(&model, &element, &motion, Some(|| q), 1.0).unwrap();
-                prop_assert_eq!(closed.touch, touch);
+                prop_assert_eq!(Touch::of(&model, &element, &eta, Some(|| q)), touch);
                 let split = Contact::split(&model, &element, &eta, Some(&q), 1.0, Tangent::Whole).unwrap();
                 prop_assert!(same_tangent(&closed, &split, h, 7.0 + 4.0));
                 let Integrals::Moments { offset, .. } = split.force else {
@@ -721,7 +719,7 @@ mod tests {
             let plain = scene(Linear(7.0), ());
             let element = self::element(&plain, h);
             let closed = Contact::at(&plain, &element, &motion, Some(Cubic::default), 0.25).unwrap();
-            prop_assert_eq!(closed.touch, Touch::Full);
+            prop_assert_eq!(Touch::of(&plain, &element, &eta, Some(Cubic::default)), Touch::Full);
             let split = Contact::split(&plain, &element, &eta, None, 0.25, Tangent::Whole).unwrap();
             prop_assert!(same_tangent(&closed, &split, h, 7.0));
         }

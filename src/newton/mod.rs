@@ -886,7 +886,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 part.absorb(&loaded::<_, _, MIRRORED>(&Contact::none(), element, work, step), h)
             }
             touch @ (Touch::Full | Touch::High | Touch::Low) if !ends => {
-                let contact = Contact::uniform(touch, touch.stiffness(model, element, scale));
+                let contact = Contact::uniform(touch.stiffness(model, element, scale));
                 part.absorb(&loaded::<_, _, MIRRORED>(&contact, element, work, step), h)
             }
             _ => {
