@@ -201,3 +201,17 @@ fn single_precision_goes_in_lockstep_too() {
         assert!((f64::from(solution.at(0.5).bending) / double[0].bending - 1.0).abs() < 1e-4);
     }
 }
+
+#[test]
+fn the_cap_on_visits_holds_on_a_mesh_too_small_for_coarser_ones() {
+    let scenes = [1e6, -1e6, 1e4].map(|load| soft(1e8, load));
+    let mut batch = Batch::<f64, _, 4>::new();
+    for most in (40..1100).step_by(35) {
+        let mut group = batch.prepare(&scenes, &Mesh::uniform(40)).expect("room");
+        group.solve(&Settings { max_visits: Some(most), ..SETTINGS }).expect("settings in range");
+        for l in 0..3 {
+            let report = *group.solution(l).expect("solved").report();
+            assert!(report.element_visits <= most, "{most}: {report:?}");
+        }
+    }
+}

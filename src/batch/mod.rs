@@ -14,7 +14,7 @@ use crate::error::Error;
 use crate::law::Compliance;
 use crate::mesh::Mesh;
 use crate::newton::nested::{self, Answer, Levels};
-use crate::newton::{Report, Settings, Status};
+use crate::newton::{Report, Residual, Settings, Status};
 use crate::problem;
 use crate::profile::Profile;
 use crate::real::{Pair, Real};
@@ -71,6 +71,13 @@ struct Lane<T: Real, M: Model<T>> {
     /// It takes part in the lockstep.
     joins: bool,
     outcome: Result<Option<Answer<T, M>>, Error>,
+}
+
+impl<T: Real, M: Model<T>> Lane<T, M> {
+    /// Elements of the finest mesh.
+    fn elements(&self) -> usize {
+        self.levels.first().map_or(0, |&(_, len)| len)
+    }
 }
 
 impl<T: Real, M: Model<T>, const L: usize> Default for Batch<T, M, L> {
@@ -191,8 +198,7 @@ impl<T: Real, M: Model<T>, const L: usize> Group<'_, T, M, L> {
             return Err(nothing);
         };
         let answer = known.outcome?.ok_or(nothing)?;
-        let elements = known.levels.first().map_or(0, |&(_, len)| len);
-        Ok(Solution::new(scene, self.of(lane).get(..elements).unwrap_or_default(), answer))
+        Ok(Solution::new(scene, self.of(lane).get(..known.elements()).unwrap_or_default(), answer))
     }
 
     /// Places of a lane.
@@ -203,12 +209,11 @@ impl<T: Real, M: Model<T>, const L: usize> Group<'_, T, M, L> {
 
     /// Finds the lanes that can go in lockstep, and packs their elements.
     fn pack(&mut self) {
-        let elements = |lane: &Lane<T, M>| lane.levels.first().map_or(0, |&(_, len)| len);
         let sound = |l: usize| {
             let (Some(scene), Some(lane)) = (self.scenes.get(l), self.batch.lanes.get(l)) else {
                 return false;
             };
-            let places = self.of(l).get(..elements(lane)).unwrap_or_default();
+            let places = self.of(l).get(..lane.elements()).unwrap_or_default();
             !places.is_empty()
                 && nested::is_soft(scene, places)
                 && !(M::Mu1::PRESENT && electric::conducts_onto(places))
@@ -254,8 +259,8 @@ impl<T: Real, M: Model<T>, const L: usize> Group<'_, T, M, L> {
         for ((lane, scene), places) in
             batch.lanes.iter_mut().zip(*scenes).zip(batch.places.chunks_mut(*stride))
         {
+            let elements = lane.elements();
             if let Ok(outcome @ None) = &mut lane.outcome {
-                let elements = lane.levels.first().map_or(0, |&(_, len)| len);
                 let most = nested::budget(settings, elements).most_visits;
                 let spent = if lane.joins { visits.min(most) } else { 0 };
                 let rest = Settings { max_visits: Some(most - spent), ..*settings };
@@ -285,8 +290,9 @@ impl<T: Real, M: Model<T>, const L: usize> Group<'_, T, M, L> {
         };
         let levels = lane.levels.clone();
         let Some(&(_, elements)) = levels.first() else { return (0, 0) };
-        let works = levels.iter().map(|&(_, len)| (COARSE_STEPS + 2) * len).sum::<usize>();
-        if works > nested::budget(settings, elements).most_visits {
+        // The free beam, and statics after each step.
+        let work = levels.iter().map(|&(_, len)| (1 + 2 * COARSE_STEPS) * len).sum::<usize>();
+        if work > nested::budget(settings, elements).most_visits {
             return (0, 0);
         }
         let joins: [bool; L] =
@@ -345,7 +351,7 @@ fn lockstep<T: Real, M: Model<T>, const L: usize>(
     settings: &Settings<T>,
     iterations: &mut usize,
     visits: &mut usize,
-) -> Option<[crate::newton::Residual<T>; L]> {
+) -> Option<[Residual<T>; L]> {
     let &(_, elements) = levels.first()?;
     let mesh = places.map(|places| places.get(..elements).unwrap_or_default());
     let ends: [_; L] = core::array::from_fn(|l| nested::ends(scenes[l], mesh[l]).map(|end| end.value));
@@ -394,7 +400,7 @@ fn lockstep<T: Real, M: Model<T>, const L: usize>(
                 if close {
                     *visits += len;
                     found = level.balance(quiet, length);
-                    let done = |residual: &crate::newton::Residual<T>| residual.relative() <= settings.stop;
+                    let done = |residual: &Residual<T>| residual.relative() <= settings.stop;
                     if !M::Law::PRESENT || found.as_ref()?.iter().all(done) {
                         break;
                     }
@@ -409,7 +415,7 @@ fn lockstep<T: Real, M: Model<T>, const L: usize>(
     let mut found = found?;
     for (residual, spoilt) in found.iter_mut().zip(spoilt) {
         if spoilt {
-            *residual = crate::newton::Residual::of(T::infinity(), T::one(), T::zero(), T::infinity());
+            *residual = Residual::of(T::infinity(), T::one(), T::zero(), T::infinity());
         }
     }
     Some(found)
