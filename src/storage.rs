@@ -113,7 +113,10 @@ pub(crate) struct Work<T: Real, M: Model<T>> {
     pub(crate) factor: Factor<T, Bending>,
     /// Which is which, the iteration knows.
     pub(crate) states: States<T>,
-    pub(crate) touch: Touch,
+    /// How it touched when it was swept last.
+    pub(crate) swept: Touch,
+    /// How it touches, where the iteration has looked.
+    touch: Touch,
     /// What is missing of equilibrium: differences of force and moment at the left end.
     pub(crate) open: T::Vec2,
     pub(crate) node: Node<T, M>,
@@ -121,6 +124,17 @@ pub(crate) struct Work<T: Real, M: Model<T>> {
 }
 
 impl<T: Real, M: Model<T>> Work<T, M> {
+    /// How the element touches; free without a foundation, which the compiler then knows.
+    #[inline(always)]
+    pub(crate) fn touch(&self) -> Touch {
+        if Touch::possible::<T, M>() { self.touch } else { Touch::Free }
+    }
+
+    #[inline(always)]
+    pub(crate) fn set_touch(&mut self, touch: Touch) {
+        self.touch = touch;
+    }
+
     #[inline(always)]
     pub(crate) fn link(&self) -> Option<&Link<T>> {
         self.linked.look()
@@ -145,6 +159,7 @@ impl<T: Real, M: Model<T>> Default for Work<T, M> {
             condensed: Condensed::default(),
             factor: Factor::default(),
             states: States::default(),
+            swept: Touch::Free,
             touch: Touch::Free,
             open: T::Vec2::default(),
             node: Node::default(),

@@ -37,6 +37,12 @@ pub(crate) enum Touch {
 }
 
 impl Touch {
+    /// Is there a foundation to touch?
+    #[inline(always)]
+    pub(crate) const fn possible<T: Real, M: Model<T>>() -> bool {
+        M::Law::PRESENT || M::Mu1::PRESENT
+    }
+
     /// How `element` touches at the penetration `eta` and the potential `q`, if it acts, without any quadrature.
     /// Unless it is `Edge` or `Mixed`, the element's matrix and its part in the right-hand side follow from this and
     /// its samples alone.
@@ -142,11 +148,23 @@ impl<T: Real> Contact<T> {
         q: Option<impl Fn() -> Cubic<T>>,
         scale: T,
     ) -> Result<Self, Fault> {
-        if !M::Law::PRESENT && !M::Mu1::PRESENT {
+        if !Touch::possible::<T, M>() {
             return Ok(Self::none());
         }
-        let eta = motion.cubic();
-        let touch = Touch::of(model, element, &eta, q.as_ref());
+        let touch = Touch::of(model, element, &motion.cubic(), q.as_ref());
+        Self::touching(touch, model, element, motion, q, scale)
+    }
+
+    /// The same, where it is known how the element touches.
+    #[inline(always)]
+    pub(crate) fn touching<M: Model<T>>(
+        touch: Touch,
+        model: &M,
+        element: &Element<T, M>,
+        motion: &Motion<T>,
+        q: Option<impl Fn() -> Cubic<T>>,
+        scale: T,
+    ) -> Result<Self, Fault> {
         match touch {
             Touch::Free => Ok(Self::none()),
             Touch::Full | Touch::High | Touch::Low => {
@@ -154,7 +172,7 @@ impl<T: Real> Contact<T> {
             }
             Touch::Edge | Touch::Mixed => {
                 let q = q.filter(|_| element.conducts_onto()).map(|q| q());
-                Self::split(model, element, &eta, q.as_ref(), scale, Tangent::Whole)
+                Self::split(model, element, &motion.cubic(), q.as_ref(), scale, Tangent::Whole)
             }
         }
     }
@@ -250,7 +268,7 @@ impl<T: Real> Contact<T> {
         if M::Gap::PRESENT {
             fe = fe - element.bending.times(element.gap.bend::<T>());
         }
-        if (M::Law::PRESENT || M::Mu1::PRESENT)
+        if Touch::possible::<T, M>()
             && let Some(tangent) = self.tangent(element.h)
         {
             (ee, er, rr, free) = (ee + tangent.0, tangent.1, tangent.2, false);

@@ -143,7 +143,7 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
             let step = work.link().map_or_else(State::default, |link| link.step);
             work.states[target] = work.states[base].plus(step, t);
         }
-        self.current = target;
+        (self.current, self.located) = (target, false);
         self.trial(scale, count)
     }
 
@@ -191,6 +191,7 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
     ) -> Result<T, Halt> {
         count.spend(self.places.len())?;
         count.iterations += 1;
+        self.locate();
         let Context { model, ref onto, .. } = *self.context;
         let clamped = |value: T::Vec2| End::<T, Coupled> {
             held: [true; 4],
@@ -208,7 +209,9 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
             let q = onto.as_ref().map(|ratio| electric::potential(element, &node, &work.node, ratio));
             let q = q.unwrap_or_default();
             let contact = match tangent {
-                Tangent::Whole => Contact::at(model, element, &motion, Some(|| q), scale(i)),
+                Tangent::Whole => {
+                    Contact::touching(work.touch(), model, element, &motion, Some(|| q), scale(i))
+                }
                 Tangent::Nondecreasing => Contact::nondecreasing(model, element, &motion, &q, scale(i)),
             }
             .map_err(|fault| Halt::Law(i, fault))?;

@@ -180,6 +180,8 @@ pub(crate) struct Level<'a, 'b, T: Real, M: Model<T>> {
     pub(crate) meeting: usize,
     /// The condensed parts are those of a state, not of an increment.
     pub(crate) fresh: bool,
+    /// Each element's touch is that of the current state and potential.
+    located: bool,
     /// Elements whose law the continuation in the stiffness scales.
     scaled: Range<usize>,
 }
@@ -223,7 +225,8 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     pub(crate) fn new(context: &'b Context<'a, T, M>, places: &'b mut [Place<T, M>]) -> Self {
         let meeting = (places.len() / 2).max(1);
         let scaled = 0..places.len();
-        Self { context, places, node: Node::default(), current: 0, best: None, meeting, fresh: false, scaled }
+        let (node, fresh, located) = (Node::default(), false, false);
+        Self { context, places, node, current: 0, best: None, meeting, fresh, located, scaled }
     }
 
     /// Is bending in a loop with the potential?
@@ -235,6 +238,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     /// u, q and the fluxes from the current penetration, to all digits.
     pub(crate) fn electric(&mut self) {
         self.node = electric::solve::<T, M, true>(self.context.model, self.places, self.current);
+        self.located = false;
     }
 
     /// The same where bending moves them.
@@ -248,6 +252,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     fn renew_rounded(&mut self) {
         if self.two_way() {
             self.node = electric::solve::<T, M, false>(self.context.model, self.places, self.current);
+            self.located = false;
         }
     }
 
@@ -260,6 +265,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         most: usize,
         count: &mut Count,
     ) -> Result<Outcome, Halt> {
+        self.renew_rounded();
         // The scale is a new one wherever the beam touches.
         let changed = self.changed(true);
         self.iterate_from(changed, scale, goal, most, count)
@@ -319,7 +325,6 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         count: &mut Count,
     ) -> Result<Outcome, Halt> {
         let stop = goal.stop;
-        self.renew_rounded();
         // The shortest step, and the least residual where steps went down the energy.
         let (mut least, mut lowest) = (T::infinity(), T::infinity());
         let (mut rounds_since_best, mut stuck) = (0, 0);
@@ -409,7 +414,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
 
     /// Had one of the elements an edge of contact in it when they were swept?
     fn edges(&self, swept: &Range<usize>) -> bool {
-        let edge = |place: &Place<T, M>| place.work.touch == Touch::Edge;
+        let edge = |place: &Place<T, M>| place.work.swept == Touch::Edge;
         self.places.get(swept.clone()).is_some_and(|places| places.iter().any(edge))
     }
 
@@ -601,6 +606,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     /// Back to the share t of the way from the spare state to the current one.
     fn retreat(&mut self, t: T) {
         let current = self.current;
+        self.located = false;
         for Place { work, .. } in self.places.iter_mut() {
             work.states[current] = work.states[1 - current].toward(work.states[current], t);
         }
@@ -703,6 +709,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             for Place { work, .. } in self.places.iter_mut() {
                 work.states[current].d = work.states[spare].d;
             }
+            self.located = false;
             open = T::Vec2::default();
             residual = self.balance(scale)?;
         }
@@ -724,6 +731,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     /// has to move.
     fn join_nodes(&mut self) -> T::Vec2 {
         let current = self.current;
+        self.located = false;
         let right = self.context.right.value;
         let (mut w, mut theta) = (Sum::<T>::from(right.x()), Sum::<T>::from(right.y()));
         for Place { element, work } in self.places.iter_mut().rev() {
@@ -805,6 +813,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             && best != self.current
         {
             self.current = best;
+            self.located = false;
             self.renew();
         }
     }
@@ -822,6 +831,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     /// the meeting point.
     #[inline(never)]
     fn condense(&mut self, swept: Range<usize>, scale: T, solve: Solve<T>) -> Result<(), Halt> {
+        self.locate();
         let scale = self.scaling(scale);
         let (mut left, mut right) = (self.context.left, self.context.right);
         if let Solve::Increment { open } = solve {
@@ -879,19 +889,20 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         let State { e, d } = work.states[current];
         let motion = Motion::new(element.h, e, d);
         let q = onto.as_ref().map(|ratio| || electric::potential(element, before, &work.node, ratio));
-        work.touch = Touch::of(model, element, &motion.cubic(), q.as_ref());
+        let touch = work.touch();
+        work.swept = touch;
         let h = if MIRRORED { -element.h } else { element.h };
-        let absorbed = match work.touch {
+        let absorbed = match touch {
             Touch::Free if !ends => {
                 part.absorb(&loaded::<_, _, MIRRORED>(&Contact::none(), element, work, step), h)
             }
-            touch @ (Touch::Full | Touch::High | Touch::Low) if !ends => {
+            Touch::Full | Touch::High | Touch::Low if !ends => {
                 let contact = Contact::uniform(touch.stiffness(model, element, scale));
                 part.absorb(&loaded::<_, _, MIRRORED>(&contact, element, work, step), h)
             }
             _ => {
-                let contact =
-                    Contact::at(model, element, &motion, q, scale).map_err(|fault| Halt::Law(i, fault))?;
+                let contact = Contact::touching(touch, model, element, &motion, q, scale)
+                    .map_err(|fault| Halt::Law(i, fault))?;
                 join::<_, _, MIRRORED>(&contact, element, work, step, ends.then_some(end), &part)
             }
         };
@@ -912,6 +923,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     #[inline(never)]
     fn balance(&mut self, scale: T) -> Result<Residual<T>, Halt> {
         let Context { model, ref onto, .. } = *self.context;
+        self.locate();
         let scale = self.scaling(scale);
         let mut residual = Residual::none();
         let mut rest = T::zero();
@@ -1005,34 +1017,40 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             see(element, before, work.states[target]);
             near = far;
         }
-        self.current = target;
+        (self.current, self.located) = (target, false);
         let size = size.max(self.context.quiet);
         Some(Residual { mismatch, size, sum, ..Residual::none() })
     }
 
     /// From the first to the last element whose matrix the current state changes, or whose part in the
     /// right-hand side; `rescaled`: or that touches.
-    pub(crate) fn changed(&self, rescaled: bool) -> Range<usize> {
-        let mut changed = self.places.len()..0;
-        if !M::Law::PRESENT && !M::Mu1::PRESENT {
-            return 0..0;
+    pub(crate) fn changed(&mut self, rescaled: bool) -> Range<usize> {
+        self.locate();
+        let changes = |place: &Place<T, M>| {
+            let (swept, touch) = (place.work.swept, place.work.touch());
+            matches!(touch, Touch::Edge | Touch::Mixed)
+                || touch != swept
+                || (rescaled && touch != Touch::Free)
+        };
+        let Some(first) = self.places.iter().position(changes) else { return 0..0 };
+        first..self.places.iter().rposition(changes).unwrap_or(first) + 1
+    }
+
+    /// Finds how each element touches.
+    pub(super) fn locate(&mut self) {
+        if self.located || !Touch::possible::<T, M>() {
+            return;
         }
         let Context { model, ref onto, .. } = *self.context;
-        let mut node = &self.node;
-        for (i, Place { element, work }) in self.places.iter().enumerate() {
+        let mut node = self.node;
+        for Place { element, work } in self.places.iter_mut() {
             let State { e, d } = work.states[self.current];
-            let q = onto.as_ref().map(|ratio| || electric::potential(element, node, &work.node, ratio));
+            let q = onto.as_ref().map(|ratio| || electric::potential(element, &node, &work.node, ratio));
             let eta = Motion::new(element.h, e, d).cubic();
-            let touch = Touch::of(model, element, &eta, q);
-            if matches!(touch, Touch::Edge | Touch::Mixed)
-                || touch != work.touch
-                || (rescaled && touch != Touch::Free)
-            {
-                changed = changed.start.min(i)..i + 1;
-            }
-            node = &work.node;
+            work.set_touch(Touch::of(model, element, &eta, q));
+            node = work.node;
         }
-        if changed.start >= changed.end { 0..0 } else { changed }
+        self.located = true;
     }
 }
 
@@ -1046,7 +1064,7 @@ fn at<T: Real, M: Model<T>>(places: &mut [Place<T, M>], i: usize) -> Option<Neig
     Some((before.last(), rest.first_mut()?))
 }
 
-/// The contact of an element in one of its states, and that state's motion.
+/// The contact of an element in the current state, which is known as it touches, and that state's motion.
 #[inline(always)]
 fn linearise<T: Real, M: Model<T>>(
     model: &M,
@@ -1060,7 +1078,7 @@ fn linearise<T: Real, M: Model<T>>(
     let State { e, d } = work.states[state];
     let motion = Motion::new(element.h, e, d);
     let q = ratio.as_ref().map(|ratio| || electric::potential(element, left, &work.node, ratio));
-    Contact::at(model, element, &motion, q, scale).map(|contact| (contact, motion))
+    Contact::touching(work.touch(), model, element, &motion, q, scale).map(|contact| (contact, motion))
 }
 
 /// The part of an element with the given contact in a sweep, `MIRRORED` in that from the right; `step`: in that for an

@@ -513,6 +513,7 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
         level.current = self.current;
         level.cold(Goal::start(), count)?;
         (self.current, self.meeting, self.fresh) = (level.current, level.meeting, level.fresh);
+        self.located = false;
         let most = if goal.finest { 4 * STAGE } else { STAGE };
         let outcome = self.iterate(T::one(), goal, most, count)?;
         if outcome == Outcome::Stalled && self.convex() {
@@ -553,6 +554,7 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
             for place in self.places.iter_mut() {
                 place.work.states = States::default();
             }
+            self.located = false;
             self.begin(goal, count)
         } else {
             Ok(outcome)
@@ -657,6 +659,7 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
 
     /// The beam without any deflection.
     fn straighten(&mut self) {
+        self.located = false;
         let gap = self.context.model.foundation().gap;
         for Place { element, work } in self.places.iter_mut() {
             let [s, slope, _] = gap.jet(element.right, element.x(T::of(0.5)));
