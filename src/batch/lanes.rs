@@ -233,11 +233,10 @@ impl<F: Field> Mul for Four<F> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        let column = |[x, y]: [F; 2]| {
-            let Two { x, y } = self * Two { x, y };
-            [x, y]
-        };
-        Self(other.0.map(column))
+        // Written out: a function of the columns is not inlined, and goes through memory.
+        let [[a, b], [c, d]] = other.0;
+        let (left, right) = (self * Two { x: a, y: b }, self * Two { x: c, y: d });
+        Self([[left.x, left.y], [right.x, right.y]])
     }
 }
 

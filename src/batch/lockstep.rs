@@ -178,22 +178,26 @@ impl<T: Real, M: Model<T>, const L: usize> Lockstep<'_, T, M, L> {
     /// The part of element i in a sweep.
     #[inline(always)]
     fn stamp(&mut self, i: usize, touches: bool) -> Stamp<Lanes<T, L>, Bending> {
-        let Touching { blocks: (ee, er, rr), offset: (oe, or) } =
-            if touches { self.contact(i) } else { Touching::default() };
+        let contact = if touches { self.contact(i) } else { None };
         let blank = Slot::default();
         let slot = self.slots.get(i).unwrap_or(&blank);
-        let mut fe = slot.fe + oe;
+        let (mut ee, mut fe, mut fr, free) = (slot.bending, slot.fe, slot.fr, contact.is_none());
         if M::Gap::PRESENT {
             fe = fe - slot.bending.times(slot.bend);
         }
-        let re = <Lanes<T, L> as Field>::Mat2::ZERO;
-        Stamp { ee: slot.bending + ee, er, re, rr, fe, fr: slot.fr + or, free: false }
+        let none = <Lanes<T, L> as Field>::Mat2::ZERO;
+        let (mut er, mut rr) = (none, Symmetric::default());
+        if let Some(Touching { blocks, offset: (oe, or) }) = contact {
+            (ee, er, rr) = (ee + blocks.0, blocks.1, blocks.2);
+            (fe, fr) = (fe + oe, fr + or);
+        }
+        Stamp { ee, er, re: none, rr, fe, fr, free }
     }
 
-    /// The contact of element i.
+    /// The contact of element i; `None` where it is free in all lanes.
     #[inline(always)]
-    fn contact(&mut self, i: usize) -> Touching<T, L> {
-        let Some(slot) = self.slots.get(i) else { return Touching::default() };
+    fn contact(&mut self, i: usize) -> Option<Touching<T, L>> {
+        let slot = self.slots.get(i)?;
         let (motion, law, h) = (slot.motion(), slot.law, Lanes::splat(slot.h));
         let eta = motion.cubic();
         // As `Cubic::side`: what may be rounding is on neither side.
@@ -202,6 +206,9 @@ impl<T: Real, M: Model<T>, const L: usize> Lockstep<'_, T, M, L> {
         let least = b0.smaller(b1).smaller(b2.smaller(b3)) + noise;
         let most = b0.larger(b1).larger(b2.larger(b3)) - noise;
         let zero = T::ZERO;
+        if most.0.iter().fold(true, |free, most| free & (*most <= zero)) {
+            return None;
+        }
         let whole = least.with(law, |least, law| if least > zero { law } else { zero });
         let mut touching = Touching { blocks: uniform(whole * h, h), offset: Default::default() };
         // Neither free nor whole, or no number.
@@ -214,7 +221,7 @@ impl<T: Real, M: Model<T>, const L: usize> Lockstep<'_, T, M, L> {
                 self.touch_partly(i, l, &motion, &mut touching);
             }
         }
-        touching
+        Some(touching)
     }
 
     /// The contact of element i in one lane, by quadrature.
@@ -254,11 +261,15 @@ impl<T: Real, M: Model<T>, const L: usize> Lockstep<'_, T, M, L> {
         let mut rest = zero;
         let (mut force, mut moment) = (Sum::<Lanes<T, L>>::default(), Sum::<Lanes<T, L>>::default());
         for i in 0..self.slots.len() {
-            let Touching { blocks: (ee, er, rr), offset: (oe, or) } = self.contact(i);
+            let contact = self.contact(i);
             let slot = self.slots.get_mut(i)?;
             let (h, State { e, d }) = (Lanes::splat(slot.h), slot.state);
-            let (ce, cd) = (ee.times(e) + er * d - oe, er.turned() * e + rr.times(d) - or);
-            let held = slot.deforming_force::<M>(e) + ce;
+            let (mut held, mut cd) = (slot.deforming_force::<M>(e), Two::default());
+            if let Some(Touching { blocks: (ee, er, rr), offset: (oe, or) }) = contact {
+                held += ee.times(e) + er * d - oe;
+                cd = er.turned() * e + rr.times(d) - or;
+                load = load + cd.x().size() + or.x().size();
+            }
             if i == 0 {
                 (force, moment) = (Sum::from(-held.x()), Sum::from(-held.y()));
             }
@@ -270,7 +281,7 @@ impl<T: Real, M: Model<T>, const L: usize> Lockstep<'_, T, M, L> {
             largest = d.x().size().larger(d.y().size()).larger(largest);
             softest = slot.bending.yy.smaller(softest);
             lengths = (lengths.0.min(slot.h), lengths.1.max(slot.h));
-            load = load + cd.x().size() + or.x().size() + slot.fr.x().size();
+            load = load + slot.fr.x().size();
             let carried = cd - slot.fr;
             moment.add(-(h * force.value()));
             moment.add(carried.y());
