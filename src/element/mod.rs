@@ -263,20 +263,19 @@ impl<T: Real, M: Model<T>> Element<T, M> {
         let mut right = T::one();
         for part in parts {
             right = (right - part.h / h).max(zero);
-            // Motion of the part for e = (1, 0), (0, 1) and for the rigid motions d = (1, 0), (0, 1).
-            let motion = |e: (T, T), d: (T, T)| {
-                Motion::new(h, T::Vec2::of(e.0, e.1), T::Vec2::of(d.0, d.1)).part(right, part.h / h)
-            };
-            let [e1, e2] = [motion((one, zero), (zero, zero)), motion((zero, one), (zero, zero))];
-            let [r1, r2] = [motion((zero, zero), (one, zero)), motion((zero, zero), (zero, one))];
+            // Motion of the part for e = (1, 0) and (0, 1); with the whole's right node it moves rigidly.
+            let motion = |e: T::Vec2| Motion::new(h, e, T::Vec2::default()).part(right, part.h / h);
+            let (e1, e2) = (motion(T::Vec2::of(one, zero)), motion(T::Vec2::of(zero, one)));
             let k = &part.bending;
             let (k1, k2) = (k.times(e1.e), k.times(e2.e));
             whole.bending = whole.bending + Symmetric::of(e1.e.times(k1), e2.e.times(k1), e2.e.times(k2));
             let work = |m: &Motion<T>| m.e.times(part.fe) + m.d.times(part.fr);
             whole.fe += T::Vec2::of(work(&e1), work(&e2));
-            whole.fr += T::Vec2::of(r1.d.times(part.fr), r2.d.times(part.fr));
-            let pull = k.times(part.gap.bend::<T>());
-            gap_force += T::Vec2::of(e1.e.times(pull), e2.e.times(pull));
+            whole.fr += T::Vec2::of(part.fr.x(), part.fr.y() - h * right * part.fr.x());
+            if M::Gap::PRESENT {
+                let pull = k.times(part.gap.bend::<T>());
+                gap_force += T::Vec2::of(e1.e.times(pull), e2.e.times(pull));
+            }
         }
         if M::Gap::PRESENT {
             // A stiffness is a number, and positive definite; its determinant may be beyond the number format.

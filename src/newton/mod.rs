@@ -783,7 +783,8 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     /// place; keeps what is better.
     pub(crate) fn refine(&mut self, units: T, count: &mut Count) -> Result<(), Halt> {
         let Some((_, best)) = self.best else { return Ok(()) };
-        if best.relative() <= units * T::epsilon() {
+        // Where contact forces balance to moments that are small beside them, rounding is more than an increment sees.
+        if best.relative() <= (units * T::epsilon()).max(T::of(LOST) * best.floor()) {
             return Ok(());
         }
         let refined = self.rejoin(T::one(), count).and_then(|open| {
@@ -1128,6 +1129,9 @@ const POLISHINGS: usize = 6;
 
 /// Elements below which the residual shows other rounding than that of sweeps.
 const FEW: f64 = 1000.0;
+
+/// Share of what rounding may leave of a residual that is not worth a refinement.
+const LOST: f64 = 0.01;
 
 /// Elements from which on the rounding of sweeps is worth a balance before the first of them.
 const FINE: usize = 4000;
