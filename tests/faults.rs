@@ -354,7 +354,8 @@ fn work_that_ends_anywhere() {
         let report = *solution.report();
         assert!(report.element_visits <= most);
         match report.status {
-            Status::Converged => assert!(most >= visits, "{most} of {visits}"),
+            // The last three passes refine what has converged.
+            Status::Converged => assert!(most + 3 * 60 >= visits, "{most} of {visits}"),
             status => assert_eq!(status, Status::VisitLimit, "{most} of {visits}"),
         }
         if most % 16 == 0 {

@@ -21,8 +21,10 @@ use core::ops::Range;
 
 /// Elements of a mesh that are merged into one of the next coarser mesh.
 const MERGED: usize = 4;
-/// A mesh of so many elements is not coarsened further.
+/// A mesh of so many elements is not coarsened further under a soft foundation ...
 const COARSEST: usize = 40;
+/// ... and under others, where contact that is found on less than twenty elements misleads.
+const COARSEST_STIFF: usize = 80;
 /// Meshes at most: 4^16 times the coarsest is more than any memory.
 const MOST_LEVELS: usize = 16;
 /// Step after which a stage of the continuation has done its part ...
@@ -54,13 +56,15 @@ pub(crate) fn coarsen<T: Real, M: Model<T>>(
     places: &mut [Place<T, M>],
     elements: usize,
 ) -> Levels {
-    let pressed = pressed(model, places.get(..elements).unwrap_or_default());
+    let mesh = places.get(..elements).unwrap_or_default();
+    let pressed = pressed(model, mesh);
+    let coarsest = if is_soft(model, mesh) { COARSEST } else { COARSEST_STIFF };
     let mut levels = Levels::new();
     let _ = levels.try_push((0, elements));
     while let Some(&(start, len)) = levels.last() {
         // Without contact the first solve is the last.
         let linear = !M::Law::PRESENT && !M::Mu1::PRESENT;
-        if linear || len <= COARSEST || levels.is_full() {
+        if linear || len <= coarsest || levels.is_full() {
             break;
         }
         let behind = places.get_mut(start..).unwrap_or_default();
@@ -201,7 +205,6 @@ pub(crate) fn budget<T: Real>(settings: &Settings<T>, elements: usize) -> Count 
 }
 
 /// Do full steps from the free beam find the contact, without a continuation in the stiffness?
-#[cfg(feature = "alloc")]
 pub(crate) fn is_soft<T: Real, M: Model<T>>(model: &M, places: &[Place<T, M>]) -> bool {
     let most = |of: &dyn Fn(&Element<T, M>) -> T| places.iter().fold(T::zero(), |m, p| m.max(of(&p.element)));
     let law = model.foundation().law;
