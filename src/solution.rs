@@ -337,7 +337,8 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
     /// The law's coefficient at x, as the element has it.
     pub(crate) fn stiffness(&self, x: T) -> T {
         let law = self.scene.foundation().law;
-        let k = law.coefficient(x, self.mid);
+        // At a node what is zero but for rounding may be less.
+        let k = law.coefficient(x, self.mid).max(T::zero());
         if self.rigid { law.at_most(k, self.element.rigid()) } else { k }
     }
 
@@ -453,7 +454,10 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
         let points = [0.0, 0.25, 0.5, 0.75, 1.0].map(T::of);
         let held = |t: T| {
             let x = self.element.x(t);
-            let mut slope = law.pressure(self.stiffness(x), x, self.eta.at(t).abs()).1;
+            let r = self.eta.at(t).abs();
+            // A law of the caller's need not have the slope that it says.
+            let (p, slope) = law.pressure(self.stiffness(x), x, r);
+            let mut slope = slope.max(p / r);
             if M::Mu1::PRESENT {
                 let drive = truncate(self.q.at(t), conduction.potential_truncation).0;
                 slope = slope + (conduction.mu1.value(x, self.mid) * drive).abs();

@@ -193,15 +193,12 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
                 (false, true) => [0.0, charge / eps, 0.0, (charge / eps).abs()],
                 (false, false) => [0.0; 4],
             };
-            let flux = [(ea * du).abs() + (p * dq).abs(), (p * du).abs() + eps * dq.abs()];
-            if !(M::Axial::PRESENT && M::Permittivity::PRESENT) {
-                return Strains { du, dq, size_u, size_q, flux };
+            let mut flux = [(ea * du).abs() + (p * dq).abs(), (p * du).abs() + eps * dq.abs()];
+            if M::Axial::PRESENT && M::Permittivity::PRESENT {
+                // The solver carries sigma + r D, r = P / eps, and takes it apart again: a documented limit.
+                flux[0] += (p / eps * charge).abs();
             }
-            // The solver carries sigma + r D, r = P / eps, and takes it apart again: a documented limit where r is large.
-            let ratio = (p / eps).abs();
-            let apart = ratio * charge.abs();
-            let size_q = size_q.max((charge.abs() + (p * du).abs()) / eps + ratio * size_u);
-            Strains { du, dq, size_u: size_u.max(apart / ea), size_q, flux: [flux[0] + apart, flux[1]] }
+            Strains { du, dq, size_u, size_q, flux }
         };
         let [fa, fb] = [at(a), at(b)];
         let eta = |x: f64, f: &piezobeam::Fields<T>| {
@@ -321,11 +318,13 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
             let k = foundation.law.coefficient(number(b), mid);
             let r = penetration.ends[1];
             let (p, slope) = foundation.law.pressure(k, number(b), number(r));
-            let rounding = slope.f64() * (field.bending.f64().abs() + or(field.gap).abs());
+            // The slope may not be that of the law, and the law may fall.
+            let steep = slope.f64().abs().max(p.f64().abs() / r);
+            let rounding = steep * (field.bending.f64().abs() + or(field.gap).abs());
             let size = p.f64().abs().max(or(field.pressure)) + rounding;
             if size > 0.0 {
                 // What is small beside the rest of the element's penetration is its rounding.
-                let slack = slope.f64() * (64.0 * T::epsilon().f64() * penetration.largest());
+                let slack = steep * (64.0 * T::epsilon().f64() * penetration.largest());
                 let difference = ((p.f64() - or(field.pressure)).abs() - slack).max(0.0);
                 found.law = found.law.max(difference / size);
             }
