@@ -74,6 +74,18 @@ impl<T: Real> Ratio<T> {
     }
 }
 
+impl<T: Real> Ratio<T> {
+    /// A bound of all that the gradients are sums of, whatever P is: uu is at most 1 / EA, qq 1 / eps and uq half of the
+    /// root of both.
+    pub(crate) fn most<M: Model<T>>(&self, axial: T, permittivity: T, tau: T, d: T) -> T {
+        let part = |present: bool, value: T| if present { value.recip() } else { T::zero() };
+        let (uu, qq) = (part(M::Axial::PRESENT, axial), part(M::Permittivity::PRESENT, permittivity));
+        let uq = if M::Piezo::PRESENT { T::of(0.5) * uu.sqrt() * qq.sqrt() } else { T::zero() };
+        let r = self.r.abs();
+        tau.abs() * (uu + uq) + d.abs() * (uq + r * uu + qq + r * uq)
+    }
+}
+
 /// Integrals from the left end of what multiplies tau and D in u' and q'.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Reach<T, const EXACT: bool> {
@@ -188,6 +200,30 @@ pub(crate) fn solve<T: Real, M: Model<T>, const EXACT: bool>(
         work.node.q = Slot::of(ends.right);
     }
     left
+}
+
+/// What rounding may have left in the potential at nodes, over the largest one. Where P^2 is larger than EA eps by many
+/// orders q' is a difference of D / eps and P u' / eps, in tau and D as well.
+/// Zero where it is not so many that more than `stop` could be lost.
+pub(crate) fn rounding<T: Real, M: Model<T>>(places: &[Place<T, M>], left: &Node<T, M>, stop: T) -> T {
+    let Some(first) = places.first().filter(|_| M::Piezo::PRESENT) else { return T::zero() };
+    let ratio = Ratio::of(&first.element);
+    let most = T::of(0.25) * stop / T::epsilon();
+    let few = |Place { element, .. }: &Place<T, M>| {
+        let Inverse { uq, qq, .. } = element.flexibility.mean();
+        (ratio.r * uq).abs() <= most * qq
+    };
+    if places.iter().all(few) {
+        return T::zero();
+    }
+    let (mut parts, mut most) = (T::zero(), left.q.get().abs());
+    for Place { element, work } in places {
+        let Inverse { uq, qq, .. } = element.flexibility.mean();
+        let Node { tau, q, charge, .. } = work.node;
+        parts = parts + element.h * (((qq + ratio.r * uq) * charge.get()).abs() + (uq * tau.get()).abs());
+        most = most.max(q.get().abs());
+    }
+    if parts == T::zero() { parts } else { T::epsilon() * parts / most }
 }
 
 fn motion<T: Real, M: Model<T>>(element: &Element<T, M>, state: crate::storage::State<T>) -> Motion<T> {

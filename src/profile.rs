@@ -16,6 +16,9 @@ use crate::real::Real;
 
 /// A profile on one element, as a function of t: 0 at the right node, 1 at the left one.
 pub trait Piece<T>: Copy + Default + PartialEq + core::fmt::Debug {
+    /// Is it one number on any element?
+    const FLAT: bool;
+
     /// From the values at the four Gauss points, in ascending t.
     fn from_samples(samples: [T; 4]) -> Self;
     /// Value at t.
@@ -40,6 +43,7 @@ pub trait Piece<T>: Copy + Default + PartialEq + core::fmt::Debug {
 pub struct Flat<T>(pub T);
 
 impl<T: Real> Piece<T> for () {
+    const FLAT: bool = true;
     type Join<P: Piece<T>> = P;
     type Flattened = Flat<T>;
     type Gate<P: Piece<T>> = ();
@@ -64,6 +68,7 @@ impl<T: Real> Piece<T> for () {
 }
 
 impl<T: Real> Piece<T> for Flat<T> {
+    const FLAT: bool = true;
     type Join<P: Piece<T>> = P::Flattened;
     type Flattened = Flat<T>;
     type Gate<P: Piece<T>> = P;
@@ -90,6 +95,7 @@ impl<T: Real> Piece<T> for Flat<T> {
 }
 
 impl<T: Real> Piece<T> for Cubic<T> {
+    const FLAT: bool = false;
     type Join<P: Piece<T>> = Cubic<T>;
     type Flattened = Cubic<T>;
     type Gate<P: Piece<T>> = P;

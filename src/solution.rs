@@ -33,7 +33,7 @@ pub struct Fields<T> {
     pub slope: T,
     /// Moment C xi'' \[N m\].
     pub moment: T,
-    /// Shear (C xi'')' \[N\].
+    /// Shear (C xi'')' \[N\]; its rounding is that of the moments over the element's length.
     pub shear: T,
     /// Stretching u \[m\].
     pub stretching: Option<T>,
@@ -190,6 +190,9 @@ impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
 
     /// Forces, reactions, energy and the equilibrium of the whole beam.
     ///
+    /// A clamp's force is the shear of an element less the forces between it and the clamp. The shear's rounding is that
+    /// of the moments over the element's length, so the element is a long one of the clamp's half of the beam.
+    ///
     /// # Cost
     /// One pass over all elements.
     #[must_use]
@@ -199,6 +202,8 @@ impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
         let mut size = T::zero();
         let mut sum = Resultants::default();
         let last = self.places.len() - 1;
+        let [from_left, from_right] = self.held_by();
+        let (mut before, mut after) = (Sum::<T>::default(), Sum::<T>::default());
         for i in 0..=last {
             let solved = self.solved(i);
             let element = solved.element;
@@ -209,16 +214,26 @@ impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
             size = size + p.abs() + drive.abs() + element.fr.x().abs();
             let bend = solved.bend();
             energy.add(T::of(0.5) * bend.times(element.bending.times(bend)));
+            let net = [element.fr.x(), -p, -drive];
             if i == 0 {
-                sum.left_force = solved.held.x();
                 sum.left_moment = -solved.held.y();
             }
+            if i < from_left {
+                net.into_iter().for_each(|force| before.add(force));
+            } else if i == from_left {
+                sum.left_force = solved.held.x() - before.value();
+            }
+            if i == from_right {
+                after.add(solved.held.x());
+            }
+            if i >= from_right {
+                net.into_iter().for_each(|force| after.add(force));
+            }
             if i == last {
-                let (moment, shear) = solved.statics(T::zero());
-                sum.right_force = -shear;
-                sum.right_moment = moment;
+                sum.right_moment = solved.statics(T::zero()).0;
             }
         }
+        sum.right_force = -after.value();
         sum.contact_force = contact.value();
         sum.conduction_force = conduction.value();
         sum.load = load.value();
@@ -227,6 +242,21 @@ impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
         size = size + sum.left_force.abs() + sum.right_force.abs();
         sum.equilibrium_error = if size > T::zero() { rest.abs() / size } else { T::zero() };
         sum
+    }
+
+    /// The elements whose shear gives the left clamp's force and the right one's: the nearest to it but for those twice as
+    /// long that reach into its half of the beam.
+    fn held_by(&self) -> [usize; 2] {
+        let half = T::of(0.5) * self.scene.length();
+        let h = |i: usize| self.places.get(i).map_or(T::zero(), |place| place.element.h);
+        let longer = |best: usize, i: usize| if h(i) > T::of(2.0) * h(best) { i } else { best };
+        let n = self.places.len();
+        let begins_left = |i: &usize| self.places.get(*i).is_some_and(|p| p.element.x(T::one()) < half);
+        let ends_right = |i: &usize| self.places.get(*i).is_some_and(|p| p.element.right > half);
+        [
+            (0..n).take_while(begins_left).fold(0, longer),
+            (0..n).rev().take_while(ends_right).fold(n.saturating_sub(1), longer),
+        ]
     }
 
     /// The uniqueness condition (2.15) with both margins.
@@ -337,7 +367,8 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
     /// The law's coefficient at x, as the element has it.
     pub(crate) fn stiffness(&self, x: T) -> T {
         let law = self.scene.foundation().law;
-        let k = law.coefficient(x, self.mid);
+        // At a node what is zero but for rounding may be less.
+        let k = law.coefficient(x, self.mid).max(T::zero());
         if self.rigid { law.at_most(k, self.element.rigid()) } else { k }
     }
 
@@ -453,7 +484,10 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
         let points = [0.0, 0.25, 0.5, 0.75, 1.0].map(T::of);
         let held = |t: T| {
             let x = self.element.x(t);
-            let mut slope = law.pressure(self.stiffness(x), x, self.eta.at(t).abs()).1;
+            let r = self.eta.at(t).abs();
+            // A law of the caller's need not have the slope that it says.
+            let (p, slope) = law.pressure(self.stiffness(x), x, r);
+            let mut slope = slope.max(p / r);
             if M::Mu1::PRESENT {
                 let drive = truncate(self.q.at(t), conduction.potential_truncation).0;
                 slope = slope + (conduction.mu1.value(x, self.mid) * drive).abs();
@@ -507,7 +541,7 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
             tau = tau - h * self.between(t, T::one(), f);
         }
         let mut displacement = self.left.charge.get();
-        if M::Mu2::PRESENT {
+        if M::Mu2::PRESENT && !self.free {
             let g = |y: T| {
                 let r = truncate_positive(self.eta.at(y), conduction.truncation).0;
                 conduction.mu2.value(self.element.x(y), self.mid) * (r * r)

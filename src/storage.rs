@@ -6,7 +6,8 @@
 
 use crate::electric::Ratio;
 use crate::element::Element;
-use crate::profile::{Profile, Room, Slot};
+use crate::element::linear::Flexibility;
+use crate::profile::{Piece, Profile, Room, Slot};
 use crate::real::{Field, Pair, Real};
 use crate::scene::Model;
 use crate::sweep::pair::Bending;
@@ -179,7 +180,7 @@ pub struct Place<T: Real, M: Model<T>> {
 
 impl<T: Real, M: Model<T>> Place<T, M> {
     /// Are the fields of the element well inside the number format? Moments may balance where they are not.
-    pub(crate) fn is_finite(&self, state: usize, ratio: &Ratio<T>) -> bool {
+    pub(crate) fn is_finite(&self, model: &M, state: usize, ratio: &Ratio<T>) -> bool {
         let State { e, d } = self.work.states[state];
         let Node { u, tau, q, charge } = self.work.node;
         let (tau, charge) = (tau.get(), charge.get());
@@ -187,8 +188,27 @@ impl<T: Real, M: Model<T>> Place<T, M> {
         let (slope, h) = (self.element.deforming_force(e).y() / self.element.bending.yy, self.element.h);
         let bending = d.x().abs() + d.y().abs() + slope.abs() * (T::one() + h + T::one() / h);
         let electric = u.get().abs() + tau.abs() + q.get().abs() + charge.abs();
-        let sum = bending + electric + ratio.sigma(tau, charge).abs();
+        let sum = bending + electric + ratio.sigma(tau, charge).abs() + self.gradients(model, e, ratio);
         (sum * T::of(1e8)).is_finite()
+    }
+
+    /// Sizes of curvature, u' and q' by the coefficients at both ends of the element, where profiles may be far from what they are inside.
+    fn gradients(&self, model: &M, e: T::Vec2, ratio: &Ratio<T>) -> T {
+        let (beam, element) = (model.beam(), &self.element);
+        let (mut sum, mid) = (T::zero(), element.x(T::of(0.5)));
+        for x in [element.right - element.h, element.right] {
+            if !<M::Bending as Profile<T>>::Piece::FLAT {
+                let curvature = element.largest_moment(e) / beam.bending.value(x, mid);
+                sum = sum + curvature.abs() * (T::one() + element.h * (T::one() + element.h));
+            }
+            if Flexibility::<T, M>::VARIES {
+                let (axial, permittivity) = (beam.axial.value(x, mid), beam.permittivity.value(x, mid));
+                let Node { tau, charge, .. } = self.work.node;
+                let most = ratio.most::<M>(axial, permittivity, tau.get(), charge.get());
+                sum = sum + most * (T::one() + element.h);
+            }
+        }
+        sum
     }
 
     /// Is the beam bent in the element?

@@ -483,3 +483,20 @@ impl Visit for Held {
 fn bounds_and_meshes_hold_on_random_scenes() {
     scenes(200, &mut Held);
 }
+
+#[test]
+fn unbent_beams_are_not_apart() {
+    let bent = |load: f64, n| {
+        (Scene::new(1.0, Beam::elastic(1.0)).load(Load { transverse: load, axial: (), points: () }), n)
+    };
+    let distance = |(one, n), (other, m)| {
+        let one = Problem::new(one, Mesh::uniform(n)).expect("a scene");
+        let other = Problem::new(other, Mesh::uniform(m)).expect("a scene");
+        let (mut a, mut b) = (HeapWorkspace::new(), HeapWorkspace::new());
+        let (one, other) = (one.solve(&mut a, &settings()), other.solve(&mut b, &settings()));
+        one.expect("settings").distance(&other.expect("settings"))
+    };
+    assert_eq!(distance(bent(0.0, 2), bent(0.0, 4)), Some(0.0));
+    assert_eq!(distance(bent(1.0, 2), bent(0.0, 4)), Some(f64::INFINITY));
+    assert_eq!(distance(bent(0.0, 2), bent(0.0, 5)), None);
+}

@@ -184,7 +184,7 @@ fn a_stop_below_rounding_is_never_converged() {
 
 #[test]
 fn coefficients_beyond_the_number_format_are_a_breakdown() {
-    for stiffness in [1e-308, 1e-320] {
+    for stiffness in [1e-308, 1e-307] {
         let problem =
             Problem::new(Scene::new(1.0, Beam::elastic(stiffness)).load(plain(1e3)), Mesh::uniform(100));
         let problem = problem.expect("a scene without mistakes");
@@ -193,6 +193,48 @@ fn coefficients_beyond_the_number_format_are_a_breakdown() {
         assert!(matches!(solution.report().status, Status::Breakdown { .. }), "{:?}", solution.report());
         assert_eq!(solution.report().status.name(), "numerical_breakdown");
     }
+}
+
+#[test]
+fn a_coefficient_that_all_but_vanishes_at_an_end_is_a_breakdown() {
+    // Moments balance, but their quotient by the stiffness at the end is no number.
+    let taper = |least| Table { x: &[0.0, 1.0], y: if least { &[5e3, 1e-306] } else { &[5e3, 50.0] } };
+    let status = |least, load| {
+        let scene = Scene::new(1.0, Beam::elastic(taper(least))).load(plain(load));
+        let problem = Problem::new(scene, Mesh::uniform(3)).expect("a scene without mistakes");
+        problem.solve(&mut HeapWorkspace::new(), &Settings::default()).expect("settings").report().status
+    };
+    assert_eq!(status(false, 1e6), Status::Converged);
+    assert_eq!(status(true, 1e6), Status::Breakdown { element: 2 });
+    // Between the ends, where P^2 passes EA eps, K^-1 is largest.
+    let beam = Beam { bending: 5e3, axial: 1e5, piezo: Polynomial(&[1e-309, 100.0]), permittivity: 7.5e-304 };
+    let scene = Scene::new(1.0, beam)
+        .foundation(Foundation { law: Linear(1e8), gap: -1e-3 })
+        .conduction(Conduction::new(1.0, 1.0, 1.0))
+        .load(Load { transverse: 1e6, axial: 1e6, points: () })
+        .potential(Potential { left: 1.0, right: 1.0 });
+    let problem = Problem::new(scene, Mesh::uniform(1)).expect("a scene without mistakes");
+    let mut memory = HeapWorkspace::new();
+    let solution = problem.solve(&mut memory, &Settings::default()).expect("settings in range");
+    assert_ne!(solution.report().status, Status::Converged, "q = {:?}", solution.at(0.0).potential);
+}
+
+#[test]
+fn a_potential_without_digits_is_below_the_floor() {
+    // q' is a difference of D / eps and P u' / eps, some 1e18 times as large.
+    let beam = Beam { bending: 1.0_f32, axial: 1e5, piezo: 100.0, permittivity: 1e-19 };
+    let scene = Scene::new(1.0, beam)
+        .foundation(Foundation { law: Linear(1e8), gap: 1e-3 })
+        .conduction(Conduction::new(1.0, 1.0, 1.0))
+        .load(Load { transverse: 1e6, axial: 1e6, points: () })
+        .potential(Potential { left: 1.0, right: 1.0 });
+    let report = ends(scene, Mesh::uniform(3), Settings::default());
+    assert_eq!(report.status, Status::ToleranceBelowFloor, "{report:?}");
+    assert!(report.residual > 1.0, "{report:?}");
+    // A stop that leaves room for what is lost is reached.
+    let beam = Beam { piezo: 1e3, permittivity: 1e-3, ..beam };
+    let scene = Scene { beam, ..scene };
+    assert_eq!(ends(&scene, Mesh::uniform(3), stop(1e-3)).status, Status::Converged);
 }
 
 #[test]
@@ -304,6 +346,14 @@ fn bad_beams_are_refused_by_field_place_and_value() {
         refused(beam(1.0, bad, 1.0, 1.0), &format!("beam.axial {AT} {kind}, found {found}"));
         refused(beam(1.0, 1.0, 1.0, bad), &format!("beam.permittivity {AT} {kind}, found {found}"));
     }
+    let divides = format!("{AT} number > 0 whose reciprocal is finite, found 1e-320");
+    refused(beam(1e-320, 1.0, 1.0, 1.0), &format!("beam.bending {divides}"));
+    refused(beam(1.0, 1e-320, 1.0, 1.0), &format!("beam.axial {divides}"));
+    refused(beam(1.0, 1.0, 1.0, 1e-320), &format!("beam.permittivity {divides}"));
+    refused(
+        Scene::new(1.0, Beam::elastic(Table { x: &[0.0, 1.0], y: &[5e3, 1e-309] })),
+        "beam.bending at x = 1: expected a number > 0 whose reciprocal is finite, found 1e-309",
+    );
     refused(beam(1.0, 1.0, NAN, 1.0), &format!("beam.piezo {AT} finite number, found NaN"));
     refused(
         Scene::new(1.0, Beam::elastic(Polynomial(&[1.0, NAN]))),
@@ -333,6 +383,17 @@ fn bad_foundations_are_refused_by_field_place_and_value() {
     };
     refused(on(-1.0, 1.0), &format!("foundation.stiffness {AT} number >= 0, found -1"));
     refused(on(NAN, 1.0), &format!("foundation.stiffness {AT} finite number, found NaN"));
+    // At nodes, too, but for what rounding makes of zero.
+    let on_ramp = |ramp| {
+        Scene::new(1.0, Beam::elastic(1.0))
+            .foundation(Foundation { law: Linear(Polynomial(ramp)), gap: () })
+            .load(plain(1.0))
+    };
+    refused(on_ramp(&[-1.0, 1e3]), "foundation.stiffness at x = 0: expected a number >= 0, found -1");
+    let mut memory = HeapWorkspace::new();
+    let problem = Problem::new(on_ramp(&[-1e-12, 1e3]), Mesh::uniform(1)).expect("a scene without mistakes");
+    let solution = problem.solve(&mut memory, &Settings::default()).expect("zero but for rounding");
+    assert_eq!(solution.at(0.0).pressure, Some(0.0));
     for (bad, found) in [(0.999, "0.999"), (NAN, "NaN"), (INF, "inf")] {
         refused(on(1.0, bad), &format!("foundation.exponent: expected a finite number >= 1, found {found}"));
     }

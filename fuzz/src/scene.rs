@@ -133,11 +133,10 @@ fn solve<T: Real + Profile<T> + Smooth<T>>(input: &Input) {
         visits if visits % 256 == 255 => None,
         visits => Some(visits % (4 * VISITS)),
     };
-    // Between nodes a law with a slope that is not its derivative leads the fields astray.
-    let numbers = matches!(input.parts, Parts::Full | Parts::Bending | Parts::Contact | Parts::Gap);
-    // Naive sums need numbers for coefficients, and lose single precision to elements of very different lengths.
-    let even = matches!(mesh, Mesh::Uniform { .. }) && input.points.is_empty();
-    let also = Also { sums: numbers && (even || !input.single), bounds: input.elements.is_multiple_of(8) };
+    let numbers =
+        matches!(input.parts, Parts::Full | Parts::Bending | Parts::Contact | Parts::Gap | Parts::Closure);
+    // Naive sums need numbers for coefficients.
+    let also = Also { sums: numbers, bounds: input.elements.is_multiple_of(8) };
     let case = Case { input, length, mesh, settings, also };
     match input.parts {
         Parts::Full => case.full(),

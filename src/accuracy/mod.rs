@@ -53,11 +53,12 @@ pub struct Certificate<T> {
 
 impl<T: Real, M: Model<T>> Solution<'_, T, M> {
     /// The energy norm of the difference of two discrete bendings, (integral of C (xi_h - xi_H)''^2)^(1/2), over that
-    /// of `finer`. `None` unless the mesh of `finer` divides each element of this one into equal parts.
+    /// of `finer`; zero where neither is bent, infinite where `finer` alone is not. `None` unless the mesh of `finer`
+    /// divides each element of this one into equal parts.
     #[must_use]
     pub fn distance(&self, finer: &Solution<'_, T, M>) -> Option<T> {
-        let distance = Distance::between(self, finer)?;
-        Some(distance.bending / distance.size)
+        let Distance { bending, size, .. } = Distance::between(self, finer)?;
+        Some(if bending == T::zero() { bending } else { bending / size })
     }
 
     /// Bounds and estimates the error by a solve on a mesh four times as fine, which starts from this solution.

@@ -16,7 +16,7 @@ use crate::mesh::Mesh;
 use crate::newton::nested::{self, Answer, Levels};
 use crate::newton::{Report, Residual, Settings, Status};
 use crate::problem;
-use crate::profile::Profile;
+use crate::profile::{Piece, Profile};
 use crate::real::{Pair, Real};
 use crate::scene::{self, Model};
 use crate::solution::Solution;
@@ -321,7 +321,9 @@ impl<T: Real, M: Model<T>, const L: usize> Group<'_, T, M, L> {
             }
             let Some(scene) = self.scenes.get(l) else { continue };
             let left = electric::solve::<T, M, true>(scene, places, 0);
-            if electric::present::<T, M>() && nested::overflown(places, 0).is_some() {
+            let looked = !electric::present::<T, M>() && <M::Bending as Profile<T>>::Piece::FLAT;
+            let lost = electric::rounding(places, &left, settings.stop) > settings.stop;
+            if lost || (!looked && nested::overflown(scene, places, 0).is_some()) {
                 continue;
             }
             let report = Report {

@@ -77,6 +77,9 @@ pub(crate) fn invert<T: Real, M: Model<T>>(axial: T, piezo: T, permittivity: T) 
 }
 
 impl<T: Real, M: Model<T>> Flexibility<T, M> {
+    /// May it be other than one number on an element?
+    pub(crate) const VARIES: bool = !<Joint<T, M> as Piece<T>>::FLAT;
+
     pub(crate) fn sample(model: &M, span: &Span<T>) -> Result<Self, Error> {
         let beam = model.beam();
         let one = [T::one(); POINTS];

@@ -121,10 +121,9 @@ impl<T: Real, M: Model<T>> Element<T, M> {
         for point in points_at(model, right) {
             fr += T::Vec2::of(point.force, point.moment);
         }
-        let law = span.samples("foundation.stiffness", |x| foundation.law.coefficient(x, mid))?;
-        let law = span.not_negative(law, "foundation.stiffness")?;
-        let mu1 = span.samples("conduction.mu1", |x| conduction.mu1.value(x, mid))?;
-        let mu2 = span.samples("conduction.mu2", |x| conduction.mu2.value(x, mid))?;
+        let law = span.not_negative("foundation.stiffness", |x| foundation.law.coefficient(x, mid))?;
+        let mu1 = span.not_negative("conduction.mu1", |x| conduction.mu1.value(x, mid))?;
+        let mu2 = span.not_negative("conduction.mu2", |x| conduction.mu2.value(x, mid))?;
         let gap = if M::Gap::PRESENT {
             span.gap_bend::<M>(foundation.gap, model.length())?
         } else {
@@ -132,21 +131,7 @@ impl<T: Real, M: Model<T>> Element<T, M> {
         };
         let flexibility = Flexibility::sample(model, &span)?;
         let axial = AxialLoad::sample(model, &span, &flexibility)?;
-        Ok(Self {
-            right,
-            h,
-            bending,
-            fe,
-            fr,
-            gap,
-            law: Piece::from_samples(law),
-            mu1: Piece::from_samples(span.not_negative(mu1, "conduction.mu1")?),
-            mu2: Piece::from_samples(span.not_negative(mu2, "conduction.mu2")?),
-            flexibility,
-            axial,
-            stop,
-            children: 1,
-        })
+        Ok(Self { right, h, bending, fe, fr, gap, law, mu1, mu2, flexibility, axial, stop, children: 1 })
     }
 
     /// The bending stiffness, its mean in the last entry of the bending energy, 4 C / h \[N m^2\].
@@ -310,32 +295,55 @@ impl<T: Real> Span<T> {
         Ok(values)
     }
 
-    /// As [`Span::samples`], of a coefficient that has to be positive.
+    /// Both nodes, at which fields are asked for too.
+    fn ends(&self) -> [T; 2] {
+        [(self.right - self.h).max(T::zero()), self.right]
+    }
+
+    /// As [`Span::samples`], of a coefficient that has to be positive, and far enough from zero to be divided by.
     pub(crate) fn positive<P: Profile<T>>(
         &self,
         profile: &P,
         field: &'static str,
     ) -> Result<[T; POINTS], Error> {
         let values = self.samples(field, |x| profile.value(x, self.mid))?;
+        let least = T::max_value().recip();
+        let positive = |x: T, value: T| {
+            if value > least && value.is_finite() {
+                return Ok(());
+            }
+            let faint = value > T::zero() && value <= least;
+            let what = if faint { "a number > 0 whose reciprocal is finite" } else { "a number > 0" };
+            expect(false, field, Place::At(x.f64()), what, value)
+        };
         for (value, (t, _)) in values.iter().zip(gauss::<POINTS>()) {
-            let x = self.right - self.h * T::of(t);
-            expect(*value > T::zero(), field, Place::At(x.f64()), "a number > 0", *value)?;
+            positive(self.right - self.h * T::of(t), *value)?;
         }
-        // Fields are asked for at nodes too.
-        for x in [(self.right - self.h).max(T::zero()), self.right] {
-            let value = profile.value(x, self.mid);
-            let ok = value > T::zero() && value.is_finite();
-            expect(ok, field, Place::At(x.f64()), "a number > 0", value)?;
+        if !P::Piece::FLAT {
+            for x in self.ends() {
+                positive(x, profile.value(x, self.mid))?;
+            }
         }
         Ok(values)
     }
 
-    fn not_negative(&self, values: [T; POINTS], field: &'static str) -> Result<[T; POINTS], Error> {
+    /// The piece of a coefficient that must not be negative; at a node, where many a one ends with zero, beyond rounding.
+    #[inline(always)]
+    fn not_negative<P: Piece<T>>(&self, field: &'static str, f: impl Fn(T) -> T) -> Result<P, Error> {
+        let values = self.samples(field, &f)?;
         for (value, (t, _)) in values.iter().zip(gauss::<POINTS>()) {
             let x = self.right - self.h * T::of(t);
             expect(*value >= T::zero(), field, Place::At(x.f64()), "a number >= 0", *value)?;
         }
-        Ok(values)
+        if !P::FLAT {
+            let most = values.iter().fold(T::zero(), |most, value| most.max(*value));
+            for x in self.ends() {
+                let value = f(x);
+                let ok = value >= T::of(-64.0) * T::epsilon() * most && value.is_finite();
+                expect(ok, field, Place::At(x.f64()), "a number >= 0", value)?;
+            }
+        }
+        Ok(P::from_samples(values))
     }
 
     pub(crate) fn mid(&self) -> T {
@@ -359,7 +367,7 @@ impl<T: Real> Span<T> {
             w = w + part * T::of(1.0 - t);
         }
         let left = self.right - self.h;
-        for x in [left.max(T::zero()), self.right] {
+        for x in self.ends() {
             for number in gap.jet(x, self.mid) {
                 expect(number.is_finite(), field, Place::At(x.f64()), "a finite number", number)?;
             }

@@ -219,9 +219,13 @@ pub(crate) fn is_rounding<T: Real>(residual: &Residual<T>) -> bool {
 }
 
 /// The first element that is beyond the number format: moments may balance where displacements or fluxes are.
-pub(crate) fn overflown<T: Real, M: Model<T>>(places: &[Place<T, M>], state: usize) -> Option<usize> {
+pub(crate) fn overflown<T: Real, M: Model<T>>(
+    model: &M,
+    places: &[Place<T, M>],
+    state: usize,
+) -> Option<usize> {
     let ratio = electric::Ratio::of(&places.first()?.element);
-    places.iter().position(|place| !place.is_finite(state, &ratio))
+    places.iter().position(|place| !place.is_finite(model, state, &ratio))
 }
 
 impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
@@ -247,14 +251,19 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
         // Where all moments are below the number format nothing was balanced.
         let weightless = self.best.is_some_and(|(_, best)| best.size == T::zero());
         let bent = || self.places.iter().position(|place| weightless && place.is_bent(self.current));
-        let status = match overflown(self.places, self.current).or_else(bent) {
+        let status = match overflown(self.context.model, self.places, self.current).or_else(bent) {
             Some(element) if status == Status::Converged => Status::Breakdown { element },
             _ => status,
         };
+        // The moments' balance does not tell how many digits the potential has.
+        let lost = electric::rounding(self.places, &self.node, stop);
+        let faint = status == Status::Converged && lost > stop;
+        let residual = self.best.map_or(T::infinity(), |(_, r)| r.relative());
+        let floor = self.best.map_or(T::zero(), |(_, r)| r.floor());
         let report = Report {
-            status,
-            residual: self.best.map_or(T::infinity(), |(_, r)| r.relative()),
-            floor: self.best.map_or(T::zero(), |(_, r)| r.floor()),
+            status: if faint { Status::ToleranceBelowFloor } else { status },
+            residual: if faint { lost } else { residual },
+            floor: if faint { lost } else { floor },
             iterations: count.iterations,
             element_visits: count.visits,
             elements: self.places.len(),

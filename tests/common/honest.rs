@@ -132,12 +132,16 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
     let mut worst = [0.0_f64; 7];
     let mut found = Departure::default();
     let (mut lost, mut faint) = (0.0, 0.0);
-    // The reaction is a difference of the first element's moments over its length.
+    // The reaction is a difference of moments over the length of an element, the longest in the left half or half of it.
+    let half = 0.5 * scene.length().f64();
+    let halves = nodes.windows(2).take_while(|pair| pair[0] < half);
+    let longest = halves.fold(0.0_f64, |most, pair| most.max(pair[1] - pair[0]));
     let [deflected, bent] = nodes
-        .iter()
-        .map(|&x| at(x))
+        .windows(2)
+        .flat_map(|pair| [pair[0], 0.5 * (pair[0] + pair[1]), pair[1]])
+        .map(at)
         .fold([0.0_f64; 2], |[w, m], f| [w.max(f.bending.f64().abs()), m.max(f.moment.f64().abs())]);
-    let mut drift = 4.0 * (T::epsilon() + solution.report().residual).f64() * bent / nodes[1];
+    let mut drift = 4.0 * (T::epsilon() + solution.report().residual).f64() * bent / (0.5 * longest);
     // The field is a difference of potentials over the length.
     let ends = scene.potential().left.f64().abs() + scene.potential().right.f64().abs();
     let permittivity = beam.permittivity.value(number(0.0), number(nodes[1])).f64();
@@ -152,6 +156,8 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
         [gap, gap * (beam.bending.value(mid, mid).f64() / length / length)]
     });
     let blur = blur.fold([0.0_f64; 2], |m, b| [m[0].max(b[0]), m[1].max(b[1])]);
+    // So is that of the largest deflection in a small one.
+    let blunt = blur[0].max(64.0 * T::epsilon().f64() * deflected);
     // Such bending is nothing but rounding.
     resolved = resolved && (deflected > blur[0] || blur[0] == 0.0);
     let see = |worst: &mut f64, a: f64, b: f64, slack: f64| {
@@ -193,15 +199,12 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
                 (false, true) => [0.0, charge / eps, 0.0, (charge / eps).abs()],
                 (false, false) => [0.0; 4],
             };
-            let flux = [(ea * du).abs() + (p * dq).abs(), (p * du).abs() + eps * dq.abs()];
-            if !(M::Axial::PRESENT && M::Permittivity::PRESENT) {
-                return Strains { du, dq, size_u, size_q, flux };
+            let mut flux = [(ea * du).abs() + (p * dq).abs(), (p * du).abs() + eps * dq.abs()];
+            if M::Axial::PRESENT && M::Permittivity::PRESENT {
+                // The solver carries sigma + r D, r = P / eps, and takes it apart again: a documented limit.
+                flux[0] += (p / eps * charge).abs();
             }
-            // The solver carries sigma + r D, r = P / eps, and takes it apart again: a documented limit where r is large.
-            let ratio = (p / eps).abs();
-            let apart = ratio * charge.abs();
-            let size_q = size_q.max((charge.abs() + (p * du).abs()) / eps + ratio * size_u);
-            Strains { du, dq, size_u: size_u.max(apart / ea), size_q, flux: [flux[0] + apart, flux[1]] }
+            Strains { du, dq, size_u, size_q, flux }
         };
         let [fa, fb] = [at(a), at(b)];
         let eta = |x: f64, f: &piezobeam::Fields<T>| {
@@ -246,9 +249,9 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
             let (mut force, mut lever, mut current) = (0.0, 0.0, 0.0);
             let (k1, k2) = (conduction.mu1.value(mid, mid).f64(), conduction.mu2.value(mid, mid).f64());
             // What rounding of the penetration, a difference here, makes of the conduction.
-            drift += span * k1 * most_q.min(potential.largest()) * blur[0].min(most);
-            let most_r = blur[0] + penetration.largest();
-            leak += span * k2 * blur[0].min(most) * most_r.min(most);
+            drift += span * k1 * most_q.min(potential.largest()) * blunt.min(most);
+            let most_r = blunt + penetration.largest();
+            leak += span * k2 * blunt.min(most) * most_r.min(most);
             let fields = GAUSS.map(|[t, _]| at(x0 + span * t));
             for ([t, weight], f) in GAUSS.into_iter().zip(fields) {
                 let here = from + (to - from) * t;
@@ -263,6 +266,10 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
                 lever += weight * span * net * (1.0 - t) * span;
                 current += weight * span * (conduction.mu2.value(number(x), mid).f64() * r * r);
                 drift += 16.0 * T::epsilon().f64() * weight * span * (p.abs() + drive.abs());
+                if !M::Law::LINEAR && r > 0.0 {
+                    // What is small beside the rest of the element's penetration is its rounding.
+                    drift += weight * span * (p / r) * (64.0 * T::epsilon().f64() * penetration.largest());
+                }
             }
             // Not beyond the node, where a concentrated load makes a step.
             let end = if to == 1.0 { b } else { x0 + span };
@@ -321,11 +328,13 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
             let k = foundation.law.coefficient(number(b), mid);
             let r = penetration.ends[1];
             let (p, slope) = foundation.law.pressure(k, number(b), number(r));
-            let rounding = slope.f64() * (field.bending.f64().abs() + or(field.gap).abs());
+            // The slope may not be that of the law, and the law may fall.
+            let steep = slope.f64().abs().max(p.f64().abs() / r);
+            let rounding = steep * (field.bending.f64().abs() + or(field.gap).abs());
             let size = p.f64().abs().max(or(field.pressure)) + rounding;
             if size > 0.0 {
                 // What is small beside the rest of the element's penetration is its rounding.
-                let slack = slope.f64() * (64.0 * T::epsilon().f64() * penetration.largest());
+                let slack = steep * (64.0 * T::epsilon().f64() * penetration.largest());
                 let difference = ((p.f64() - or(field.pressure)).abs() - slack).max(0.0);
                 found.law = found.law.max(difference / size);
             }
