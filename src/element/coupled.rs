@@ -137,16 +137,17 @@ impl<T: Real> Coupling<T> {
         rows[3] = sum(&[(-one, left)]);
         rows[7] = sum(&[(-one, total)]);
 
-        let block = |i: usize, j: usize| {
-            T::Mat4::of(core::array::from_fn(|c| core::array::from_fn(|r| rows[i + r][j + c])))
-        };
+        let [e0, e1, e2, e3, d0, d1, d2, d3] = rows;
+        let (on_e, on_d) = ([e0, e1, e2, e3], [d0, d1, d2, d3]);
+        let by_e = |[a, b, c, d, ..]: Form<T>| [a, b, c, d];
+        let by_d = |[.., a, b, c, d]: Form<T>| [a, b, c, d];
         let Stamp { ee, er, rr, .. } = contact.stamp(element);
         let er: T::Mat2 = er;
         Stamp {
-            ee: block(0, 0) + bordered(&ee),
-            er: block(0, 4) + corner::<T>(er.columns()),
-            re: block(4, 0) + corner::<T>(er.turned().columns()),
-            rr: block(4, 4) + bordered(&rr),
+            ee: T::Mat4::of(on_e.map(by_e)).turned() + bordered(&ee),
+            er: T::Mat4::of(on_e.map(by_d)).turned() + corner::<T>(er.columns()),
+            re: T::Mat4::of(on_d.map(by_e)).turned() + corner::<T>(er.turned().columns()),
+            rr: T::Mat4::of(on_d.map(by_d)).turned() + bordered(&rr),
             fe: T::Vec4::of([load.x(), load.y(), zero, zero]),
             fr: T::Vec4::default(),
             free: false,

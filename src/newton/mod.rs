@@ -824,7 +824,8 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     fn extent(&mut self, changed: &Range<usize>) -> Range<usize> {
         let swept = changed.start.min(self.meeting)..changed.end.max(self.meeting);
         let most = (self.places.len() - 1).max(1);
-        self.meeting = self.meeting.clamp(changed.start, changed.end).clamp(1, most);
+        // `clamp` would check that its bounds are in order, and panic.
+        self.meeting = self.meeting.max(changed.start).min(changed.end).max(1).min(most);
         swept
     }
 

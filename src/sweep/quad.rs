@@ -20,6 +20,13 @@ fn matrix<T: Real>(rows: Rows<T>) -> T::Mat4 {
     T::Mat4::of(rows).turned()
 }
 
+/// Exchanges two of a list, if they are two: `swap` checks both places and would panic.
+fn exchange<X>(list: &mut [X; 4], i: usize, j: usize) {
+    if let Ok([one, other]) = list.get_disjoint_mut([i, j]) {
+        core::mem::swap(one, other);
+    }
+}
+
 /// A^-1 [B | v] over the rows and columns that are not held; held rows of the result are zero.
 fn eliminate<T: Real>(a: &T::Mat4, b: &T::Mat4, v: T::Vec4, held: [bool; 4]) -> Option<(T::Mat4, T::Vec4)> {
     let (mut a, mut b, mut v) = (rows::<T>(a), rows::<T>(b), v.array());
@@ -54,15 +61,16 @@ fn eliminate<T: Real>(a: &T::Mat4, b: &T::Mat4, v: T::Vec4, held: [bool; 4]) -> 
         v[i] = unit[i] * v[i];
     }
     for i in 0..4 {
-        let mut best = i;
+        let (mut best, mut largest) = (i, a[i][i].abs());
         for r in i + 1..4 {
-            if a[r][i].abs() > a[best][i].abs() {
-                best = r;
+            let size = a[r][i].abs();
+            if size > largest {
+                (best, largest) = (r, size);
             }
         }
-        a.swap(i, best);
-        b.swap(i, best);
-        v.swap(i, best);
+        exchange(&mut a, i, best);
+        exchange(&mut b, i, best);
+        exchange(&mut v, i, best);
         let pivot = a[i][i];
         if pivot == T::zero() || !pivot.is_finite() {
             return None;
@@ -78,7 +86,8 @@ fn eliminate<T: Real>(a: &T::Mat4, b: &T::Mat4, v: T::Vec4, held: [bool; 4]) -> 
             v[r] = v[r] - ratio * v[i];
         }
     }
-    for i in (0..4).rev() {
+    for below in 0..4 {
+        let i = 3 - below;
         for k in i + 1..4 {
             let (row, above) = (b[k], &mut b[i]);
             for (x, y) in above.iter_mut().zip(row) {
@@ -86,8 +95,9 @@ fn eliminate<T: Real>(a: &T::Mat4, b: &T::Mat4, v: T::Vec4, held: [bool; 4]) -> 
             }
             v[i] = v[i] - a[i][k] * v[k];
         }
-        b[i] = b[i].map(|x| x / a[i][i]);
-        v[i] = v[i] / a[i][i];
+        let pivot = a[i][i];
+        b[i] = b[i].map(|x| x / pivot);
+        v[i] = v[i] / pivot;
     }
     for i in 0..4 {
         b[i] = b[i].map(|x| unit[i] * x);

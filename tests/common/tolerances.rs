@@ -157,3 +157,6 @@ pub const METHODS_RANDOM: f64 = 1e-6;
 pub const ACROSS_KINKS: f64 = 1e-4;
 /// Iterations of Bermúdez and Moreno's algorithm over those of its rate: what the start is off by is beside it.
 pub const DUAL_ITERATIONS: std::ops::Range<f64> = 0.5..1.5;
+
+/// One function written down in two ways: coefficients differ by rounding, the meshes that begin the solve may differ.
+pub const SAME_FUNCTION: f64 = 1e-9;
