@@ -7,9 +7,7 @@ use crate::newton::{Report, Settings};
 use crate::real::Real;
 use crate::scene::{self, Model};
 use crate::solution::Solution;
-use crate::storage::{Place, Storage, Workspace};
-
-use crate::element::Element;
+use crate::storage::{Place, Storage, Work, Workspace};
 
 /// A checked scene on a mesh. Immutable: any number of solves may share it, each with its own memory.
 ///
@@ -108,8 +106,8 @@ pub(crate) fn lay<'s, T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
     let mut free = places.iter_mut();
     mesh.lay(scene, |left, right, stop| {
         if let Some(place) = free.next() {
-            *place = Place::default();
-            place.element = Element::sample(scene, left, right, stop)?;
+            place.work = Work::default();
+            place.element.lay(scene, left, right, stop)?;
         }
         Ok(())
     })?;

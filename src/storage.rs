@@ -217,6 +217,13 @@ impl<T: Real, M: Model<T>> Place<T, M> {
     }
 }
 
+impl<T: Real, M: Model<T>> AsRef<Element<T, M>> for Place<T, M> {
+    #[inline(always)]
+    fn as_ref(&self) -> &Element<T, M> {
+        &self.element
+    }
+}
+
 impl<T: Real, M: Model<T>> Clone for Place<T, M> {
     fn clone(&self) -> Self {
         *self

@@ -89,7 +89,8 @@ impl<T: Real, M: Model<T>> Flexibility<T, M> {
         } else {
             one
         };
-        let piezo = span.samples("beam.piezo", |x| beam.piezo.value(x, span.mid()))?;
+        let piezo =
+            span.samples::<PieceOf<T, M::Piezo>>("beam.piezo", |x| beam.piezo.value(x, span.mid()))?;
         let mut points = [Inverse { uu: T::zero(), uq: T::zero(), qq: T::zero() }; POINTS];
         for (i, point) in points.iter_mut().enumerate() {
             *point = invert::<T, M>(axial[i], piezo[i], permittivity[i]);
@@ -159,7 +160,8 @@ impl<T: Real, M: Model<T>> AxialLoad<T, M> {
             return Ok(Self::default());
         }
         let load = model.load();
-        let f = span.samples("load.axial", |x| load.axial.value(x, span.mid()))?;
+        let f =
+            span.samples::<PieceOf<T, M::AxialLoad>>("load.axial", |x| load.axial.value(x, span.mid()))?;
         let (mut total, mut stretch, mut charge) = (T::zero(), T::zero(), T::zero());
         for (f, (t, weight)) in f.iter().zip(gauss::<POINTS>()) {
             // integral over x of uu F = h^2 integral over t of f(t) integral_0^t uu
@@ -171,9 +173,12 @@ impl<T: Real, M: Model<T>> AxialLoad<T, M> {
         Ok(Self { total: Slot::of(total), stretch: Slot::of(stretch), charge: Slot::of(charge) })
     }
 
-    pub(crate) fn merge(elements: &[Element<T, M>]) -> Self {
+    pub(crate) fn merge<'a>(parts: impl Iterator<Item = &'a Element<T, M>>) -> Self
+    where
+        M: 'a,
+    {
         let (mut total, mut stretch, mut charge) = (T::zero(), T::zero(), T::zero());
-        for element in elements {
+        for element in parts {
             let (mean, load) = (element.flexibility.mean(), element.axial);
             stretch = stretch + load.stretch.get() + total * element.h * mean.uu;
             charge = charge + load.charge.get() + total * element.h * mean.uq;

@@ -9,6 +9,7 @@ pub(crate) mod coupled;
 pub(crate) mod hermite;
 pub(crate) mod linear;
 
+use crate::cubic::Cubic;
 use crate::error::{Error, Place, expect};
 use crate::law::Compliance;
 use crate::profile::{Piece, Profile, Slot, Smooth};
@@ -82,6 +83,13 @@ impl<T: Real, M: Model<T>> Clone for Element<T, M> {
 }
 impl<T: Real, M: Model<T>> Copy for Element<T, M> {}
 
+impl<T: Real, M: Model<T>> AsRef<Self> for Element<T, M> {
+    #[inline(always)]
+    fn as_ref(&self) -> &Self {
+        self
+    }
+}
+
 impl<T: Real, M: Model<T>> Element<T, M> {
     /// An element that stands for nothing yet: workspaces are made of these.
     pub(crate) fn blank() -> Self {
@@ -102,8 +110,20 @@ impl<T: Real, M: Model<T>> Element<T, M> {
         }
     }
 
+    /// Is each coefficient one number on any element? Then parts that are merged, between breaks, have the same.
+    const FLAT: bool = <<M::Law as Compliance<T>>::Piece as Piece<T>>::FLAT
+        && <<M::Mu1 as Profile<T>>::Piece as Piece<T>>::FLAT
+        && <<M::Mu2 as Profile<T>>::Piece as Piece<T>>::FLAT
+        && !Flexibility::<T, M>::VARIES;
+
     /// Samples the scene on [left, right].
     pub(crate) fn sample(model: &M, left: T, right: T, stop: bool) -> Result<Self, Error> {
+        let mut element = Self::blank();
+        element.lay(model, left, right, stop).map(|()| element)
+    }
+
+    /// The same in place: an element in a result would be copied more than it is worked on.
+    pub(crate) fn lay(&mut self, model: &M, left: T, right: T, stop: bool) -> Result<(), Error> {
         let h = right - left;
         let mid = left + T::of(0.5) * h;
         let span = Span { right, h, mid };
@@ -116,7 +136,9 @@ impl<T: Real, M: Model<T>> Element<T, M> {
         let fits = bending.xx.is_finite() && bending.xx > T::zero();
         let what = "a stiffness C for which C / h^3 fits the number format";
         expect(fits, "beam.bending", Place::At(mid.f64()), what, stiffness[0])?;
-        let transverse = span.samples("load.transverse", |x| load.transverse.value(x, mid))?;
+        let transverse = span.samples::<<M::Transverse as Profile<T>>::Piece>("load.transverse", |x| {
+            load.transverse.value(x, mid)
+        })?;
         let (fe, mut fr) = hermite::loads(h, transverse);
         for point in points_at(model, right) {
             fr += T::Vec2::of(point.force, point.moment);
@@ -131,7 +153,8 @@ impl<T: Real, M: Model<T>> Element<T, M> {
         };
         let flexibility = Flexibility::sample(model, &span)?;
         let axial = AxialLoad::sample(model, &span, &flexibility)?;
-        Ok(Self { right, h, bending, fe, fr, gap, law, mu1, mu2, flexibility, axial, stop, children: 1 })
+        *self = Self { right, h, bending, fe, fr, gap, law, mu1, mu2, flexibility, axial, stop, children: 1 };
+        Ok(())
     }
 
     /// The bending stiffness, its mean in the last entry of the bending energy, 4 C / h \[N m^2\].
@@ -204,19 +227,21 @@ impl<T: Real, M: Model<T>> Element<T, M> {
 
     /// The element that covers `parts`, adjacent and from left to right: energies and loads of its cubic
     /// are exactly those of the parts (Galerkin), coefficients are sampled from theirs.
-    pub(crate) fn merge(parts: &[Self]) -> Self {
+    pub(crate) fn merge<P: AsRef<Self>>(parts: &[P]) -> Self {
         let mut whole = Self::blank();
         let (Some(first), Some(last)) = (parts.first(), parts.last()) else { return whole };
-        let h = parts.iter().fold(T::zero(), |sum, part| sum + part.h);
+        let (first, last, count) = (first.as_ref(), last.as_ref(), parts.len());
+        let parts = || parts.iter().map(AsRef::as_ref);
+        let h = parts().fold(T::zero(), |sum, part| sum + part.h);
         whole.right = last.right;
         whole.h = h;
         whole.stop = last.stop;
-        whole.children = u8::try_from(parts.len()).unwrap_or(u8::MAX);
+        whole.children = u8::try_from(count).unwrap_or(u8::MAX);
 
         // Which part holds t, and where in it.
         let locate = |t: T| {
             let mut far = T::one();
-            for part in parts {
+            for part in parts() {
                 let near = far - part.h / h;
                 if t >= near {
                     return (part, ((t - near) * (h / part.h)).min(T::one()));
@@ -225,28 +250,18 @@ impl<T: Real, M: Model<T>> Element<T, M> {
             }
             (last, t * (h / last.h))
         };
-        whole.law = Piece::from_samples(gauss::<POINTS>().map(|(t, _)| {
-            let (part, t) = locate(T::of(t));
-            part.law.at(t)
-        }));
-        whole.mu1 = Piece::from_samples(gauss::<POINTS>().map(|(t, _)| {
-            let (part, t) = locate(T::of(t));
-            part.mu1.at(t)
-        }));
-        whole.mu2 = Piece::from_samples(gauss::<POINTS>().map(|(t, _)| {
-            let (part, t) = locate(T::of(t));
-            part.mu2.at(t)
-        }));
-        whole.flexibility = Flexibility::from_points(gauss::<POINTS>().map(|(t, _)| {
-            let (part, t) = locate(T::of(t));
-            part.flexibility.at(t)
-        }));
-        whole.axial = AxialLoad::merge(parts);
+        let spots =
+            gauss::<POINTS>().map(|(t, _)| if Self::FLAT { (last, T::zero()) } else { locate(T::of(t)) });
+        whole.law = Piece::from_samples(spots.map(|(part, t)| part.law.at(t)));
+        whole.mu1 = Piece::from_samples(spots.map(|(part, t)| part.mu1.at(t)));
+        whole.mu2 = Piece::from_samples(spots.map(|(part, t)| part.mu2.at(t)));
+        whole.flexibility = Flexibility::from_points(spots.map(|(part, t)| part.flexibility.at(t)));
+        whole.axial = AxialLoad::merge(parts());
 
         let (zero, one) = (T::zero(), T::one());
         let mut gap_force = T::Vec2::default();
         let mut right = T::one();
-        for part in parts {
+        for part in parts() {
             right = (right - part.h / h).max(zero);
             // Motion of the part for e = (1, 0) and (0, 1); with the whole's right node it moves rigidly.
             let motion = |e: T::Vec2| Motion::new(h, e, T::Vec2::default()).part(right, part.h / h);
@@ -284,15 +299,26 @@ pub(crate) struct Span<T> {
 }
 
 impl<T: Real> Span<T> {
+    /// Where a profile with such pieces is looked at: at the Gauss points in ascending t, or, where it is one number, once.
+    fn points<P: Piece<T>>(&self) -> impl Iterator<Item = T> + use<T, P> {
+        let (right, h, mid) = (self.right, self.h, self.mid);
+        let x = move |(t, _)| if P::FLAT { mid } else { right - h * T::of(t) };
+        gauss::<POINTS>().into_iter().take(if P::FLAT { 1 } else { POINTS }).map(x)
+    }
+
     /// Values at the Gauss points in ascending t; each has to be finite.
-    pub(crate) fn samples(&self, field: &'static str, f: impl Fn(T) -> T) -> Result<[T; POINTS], Error> {
+    #[inline(always)]
+    pub(crate) fn samples<P: Piece<T>>(
+        &self,
+        field: &'static str,
+        f: impl Fn(T) -> T,
+    ) -> Result<[T; POINTS], Error> {
         let mut values = [T::zero(); POINTS];
-        for (value, (t, _)) in values.iter_mut().zip(gauss::<POINTS>()) {
-            let x = self.right - self.h * T::of(t);
+        for (value, x) in values.iter_mut().zip(self.points::<P>()) {
             *value = f(x);
             expect(value.is_finite(), field, Place::At(x.f64()), "a finite number", *value)?;
         }
-        Ok(values)
+        Ok(if P::FLAT { [values[0]; POINTS] } else { values })
     }
 
     /// Both nodes, at which fields are asked for too.
@@ -306,7 +332,7 @@ impl<T: Real> Span<T> {
         profile: &P,
         field: &'static str,
     ) -> Result<[T; POINTS], Error> {
-        let values = self.samples(field, |x| profile.value(x, self.mid))?;
+        let values = self.samples::<P::Piece>(field, |x| profile.value(x, self.mid))?;
         let least = T::max_value().recip();
         let positive = |x: T, value: T| {
             if value > least && value.is_finite() {
@@ -316,8 +342,8 @@ impl<T: Real> Span<T> {
             let what = if faint { "a number > 0 whose reciprocal is finite" } else { "a number > 0" };
             expect(false, field, Place::At(x.f64()), what, value)
         };
-        for (value, (t, _)) in values.iter().zip(gauss::<POINTS>()) {
-            positive(self.right - self.h * T::of(t), *value)?;
+        for (value, x) in values.iter().zip(self.points::<P::Piece>()) {
+            positive(x, *value)?;
         }
         if !P::Piece::FLAT {
             for x in self.ends() {
@@ -330,9 +356,8 @@ impl<T: Real> Span<T> {
     /// The piece of a coefficient that must not be negative; at a node, where many a one ends with zero, beyond rounding.
     #[inline(always)]
     fn not_negative<P: Piece<T>>(&self, field: &'static str, f: impl Fn(T) -> T) -> Result<P, Error> {
-        let values = self.samples(field, &f)?;
-        for (value, (t, _)) in values.iter().zip(gauss::<POINTS>()) {
-            let x = self.right - self.h * T::of(t);
+        let values = self.samples::<P>(field, &f)?;
+        for (value, x) in values.iter().zip(self.points::<P>()) {
             expect(*value >= T::zero(), field, Place::At(x.f64()), "a number >= 0", *value)?;
         }
         if !P::FLAT {
@@ -359,7 +384,7 @@ impl<T: Real> Span<T> {
     /// of s'' dt. Differences of s itself would lose its curvature to rounding on short elements.
     fn gap_bend<M: Model<T>>(&self, gap: &M::Gap, length: T) -> Result<GapBend<SlotOf<T, M::Gap>>, Error> {
         let field = "foundation.gap";
-        let curvature = self.samples(field, |x| gap.jet(x, self.mid)[2])?;
+        let curvature = self.samples::<Cubic<T>>(field, |x| gap.jet(x, self.mid)[2])?;
         let (mut w, mut theta) = (T::zero(), T::zero());
         for (value, (t, weight)) in curvature.iter().zip(gauss::<POINTS>()) {
             let part = *value * T::of(weight);

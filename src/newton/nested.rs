@@ -83,11 +83,7 @@ pub(crate) fn coarsen<T: Real, M: Model<T>>(
                 to += 1;
             }
             let Some(place) = rest.get_mut(made) else { break };
-            let mut parts: ArrayVec<Element<T, M>, MERGED> = ArrayVec::new();
-            for place in fine.iter().take(to).skip(from) {
-                let _ = parts.try_push(place.element);
-            }
-            place.element = Element::merge(&parts);
+            place.element = Element::merge(fine.get(from..to).unwrap_or_default());
             made += 1;
             from = to;
         }
