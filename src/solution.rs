@@ -190,8 +190,8 @@ impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
 
     /// Forces, reactions, energy and the equilibrium of the whole beam.
     ///
-    /// A clamp's force is the shear of an element less the forces between it and the clamp. The shear's rounding is that
-    /// of the moments over the element's length, so the element is a long one of the clamp's half of the beam.
+    /// A clamp's force is the shear of an element less the forces between it and the clamp. The shear's rounding is
+    /// that of the moments over the element's length, so the element is a long one of the clamp's half of the beam.
     ///
     /// # Cost
     /// One pass over all elements.
@@ -244,8 +244,8 @@ impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
         sum
     }
 
-    /// The elements whose shear gives the left clamp's force and the right one's: the nearest to it but for those twice as
-    /// long that reach into its half of the beam.
+    /// The elements whose shear gives the left clamp's force and the right one's: the nearest to it but for those
+    /// twice as long that reach into its half of the beam.
     fn held_by(&self) -> [usize; 2] {
         let half = T::of(0.5) * self.scene.length();
         let h = |i: usize| self.places.get(i).map_or(T::zero(), |place| place.element.h);

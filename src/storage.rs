@@ -192,7 +192,8 @@ impl<T: Real, M: Model<T>> Place<T, M> {
         (sum * T::of(1e8)).is_finite()
     }
 
-    /// Sizes of curvature, u' and q' by the coefficients at both ends of the element, where profiles may be far from what they are inside.
+    /// Sizes of curvature, u' and q' by the coefficients at both ends of the element, where profiles may be far from
+    /// what they are inside.
     fn gradients(&self, model: &M, e: T::Vec2, ratio: &Ratio<T>) -> T {
         let (beam, element) = (model.beam(), &self.element);
         let (mut sum, mid) = (T::zero(), element.x(T::of(0.5)));

@@ -234,7 +234,7 @@ fn a_potential_without_digits_is_below_the_floor() {
     // A stop that leaves room for what is lost is reached.
     let beam = Beam { piezo: 1e3, permittivity: 1e-3, ..beam };
     let scene = Scene { beam, ..scene };
-    assert_eq!(ends(&scene, Mesh::uniform(3), stop(1e-3)).status, Status::Converged);
+    assert_eq!(ends(scene, Mesh::uniform(3), stop(1e-3)).status, Status::Converged);
 }
 
 #[test]

@@ -353,7 +353,8 @@ impl<T: Real> Span<T> {
         Ok(values)
     }
 
-    /// The piece of a coefficient that must not be negative; at a node, where many a one ends with zero, beyond rounding.
+    /// The piece of a coefficient that must not be negative; at nodes, where many a one ends with zero, but for
+    /// rounding.
     #[inline(always)]
     fn not_negative<P: Piece<T>>(&self, field: &'static str, f: impl Fn(T) -> T) -> Result<P, Error> {
         let values = self.samples::<P>(field, &f)?;

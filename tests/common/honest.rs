@@ -320,7 +320,9 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
         see(&mut worst[1], w, field.bending.f64(), blur[0]);
         see(&mut worst[5], u, or(field.stretching), lost);
         see(&mut worst[6], q, or(field.potential), faint);
-        for point in load.points.iter().filter(|p| (p.x.f64() - b).abs() <= 1e-14 * scene.length().f64()) {
+        // A load within rounding of a node acts at it.
+        let near = 16.0 * T::epsilon().f64() * scene.length().f64();
+        for point in load.points.iter().filter(|p| (p.x.f64() - b).abs() <= near) {
             shear += point.force.f64();
             moment -= point.moment.f64();
         }
