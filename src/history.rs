@@ -123,9 +123,10 @@ fn lay<T: Real, M: Model<T>>(
     let mut same = compare;
     let mut changed: Option<Range<usize>> = None;
     let mut free = places.iter_mut().enumerate();
+    let mut element = Element::blank();
     mesh.lay(scene, |left, right, stop| {
         if let Some((i, place)) = free.next() {
-            let element = Element::sample(scene, left, right, stop)?;
+            element.lay(scene, left, right, stop)?;
             same = same && element.covers(&place.element);
             if !element.bends_like(&place.element) {
                 changed = Some(changed.as_ref().map_or(i, |range| range.start)..i + 1);

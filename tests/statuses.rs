@@ -325,8 +325,10 @@ fn beam(bending: f64, axial: f64, piezo: f64, permittivity: f64) -> Scene<f64, B
     Scene::new(1.0, Beam { bending, axial, piezo, permittivity })
 }
 
-/// Where the only element of [0, 1] samples first.
-const AT: &str = "at x = 0.9305681557970262: expected a";
+/// Where the only element of [0, 1] looks at what is one number.
+const AT: &str = "at x = 0.5: expected a";
+/// And first at a function.
+const AT_POINT: &str = "at x = 0.9305681557970262: expected a";
 const NAN: f64 = f64::NAN;
 const INF: f64 = f64::INFINITY;
 
@@ -406,7 +408,7 @@ fn bad_foundations_are_refused_by_field_place_and_value() {
     let gap = Curve(|x: f64| [x, 1.0, NAN]);
     refused(
         scene.foundation(Foundation { law, gap }),
-        &format!("foundation.gap {AT} finite number, found NaN"),
+        &format!("foundation.gap {AT_POINT} finite number, found NaN"),
     );
     let gap = Steps { breaks: &[0.5], values: &[0.0, 1.0] };
     let said = "foundation.gap at x = 0.5: expected a continuous function, found a jump from 0 to 1";
@@ -457,7 +459,7 @@ fn bad_loads_are_refused_by_field_place_and_value() {
         &format!("load.axial {AT} finite number, found inf"),
     );
     let pole = Load { transverse: Function(|x: f64| 1.0 / (x - x)), axial: (), points: () };
-    refused(scene.load(pole), &format!("load.transverse {AT} finite number, found inf"));
+    refused(scene.load(pole), &format!("load.transverse {AT_POINT} finite number, found inf"));
     let at = |x, force, moment| {
         scene.load(Load { transverse: (), axial: (), points: [PointLoad { x, force, moment }] })
     };
