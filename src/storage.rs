@@ -289,7 +289,9 @@ pub(crate) fn first<T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
 mod tests {
     use super::*;
     use crate::element::Element;
+    use crate::mesh::Mesh;
     use crate::newton::nested::{self, Answer};
+    use crate::problem::Problem;
     use crate::profile::Flat;
     use crate::scene::{Beam, Scene};
     use crate::{Error, Settings};
@@ -317,6 +319,11 @@ mod tests {
         let mut place = Place::<f64, Whole>::default();
         place.work.states[1].e = Pair::of(1.0, 2.0);
         assert_eq!(cloned(&place.work).states[1].e, place.work.states[1].e);
+        let problem = Problem::new(scene, Mesh::uniform(2)).unwrap();
+        let mut memory = problem.workspace::<8>();
+        let mut prepared = problem.prepare(&mut memory).unwrap();
+        let report = prepared.solve(&Settings::default()).unwrap();
+        assert_eq!(cloned(&prepared.answer.unwrap()).report, report);
     }
 
     #[test]

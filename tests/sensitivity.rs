@@ -933,6 +933,11 @@ fn the_first_of_several_touches_is_found_and_a_stretch_that_ends_inside() {
             prepared(none, Mesh::uniform(100), &Settings::default(), |beam| beam.grazing())
         }
     };
+    // A current has no kink at the contact's edge, its truncation is far away.
+    let scene =
+        scene.conduction(Conduction { mu1: (), mu2: 1.0, truncation: 0.5, potential_truncation: 0.5 });
+    let current = prepared(scene, Mesh::uniform(100), &Settings::default(), |beam| beam.grazing());
+    assert_eq!(current, Ok(None));
     for touches in [true, false] {
         match found(touches) {
             Ok(Some(Grazing::Stretch { from, to })) => assert!(from == 0.0 && to < 0.6, "{from} {to}"),
