@@ -99,10 +99,10 @@
 //! # Guarantees and limits
 //!
 //! `no_std`, no unsafe code, no allocation in a solve, no panic in one that is optimised (the linked image is
-//! searched for it at all levels but 0), bounded work ([`Settings::max_visits`]), and the same bits for the same input: with the feature
-//! `libm` on all targets and optimisation levels tried, with `std` but for laws r^a where 2a is not an integer and for
-//! graded meshes, which call `pow`, `ln` and `expm1` of the system (`docs/embedded.md`). Bad input is an [`Error`] that
-//! names field, place, expected and found; not converging is a [`Status`] with the best iterate.
+//! searched for it at all levels but 0), bounded work ([`Settings::max_visits`]), and the same bits for the same input:
+//! with the feature `libm` on all targets and optimisation levels tried, with `std` but for laws r^a where 2a is not an
+//! integer and for graded meshes, which call `pow`, `ln` and `expm1` of the system (`docs/embedded.md`). Bad input is an
+//! [`Error`] that names field, place, expected and found; not converging is a [`Status`] with the best iterate.
 //!
 //! Conduction in both directions (mu1 and mu2) is iterated as a fixed point together with Newton's steps for
 //! bending as long as that is quick, else by a monolithic Newton method in (w, theta, u, q) that also finds

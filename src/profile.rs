@@ -535,6 +535,16 @@ mod tests {
     }
 
     #[test]
+    fn room_is_there_for_what_is_there() {
+        assert_eq!((Room::<f64>::look(&()), Room::<f64>::open(&mut ())), (None, None));
+        let mut kept = Kept(1.0);
+        if let Some(number) = kept.open() {
+            *number = 2.0;
+        }
+        assert_eq!(kept.look(), Some(&2.0));
+    }
+
+    #[test]
     fn the_middle_decides_which_piece_a_break_belongs_to() {
         let steps = Steps { breaks: &[0.5], values: &[1.0, 2.0] };
         assert_eq!(steps.value(0.5, 0.4), 1.0);
@@ -553,10 +563,8 @@ mod tests {
 
     #[test]
     fn wrong_shapes_name_field_place_and_found() {
-        let text = |e: Result<(), Error>| match e {
-            Err(e) => std::format!("{e}"),
-            Ok(()) => std::string::String::from("ok"),
-        };
+        let text =
+            |e: Result<(), Error>| e.map_or_else(|e| std::format!("{e}"), |()| std::string::String::new());
         let steps = Steps { breaks: &[0.5, 0.4], values: &[1.0, 2.0, 3.0] };
         assert_eq!(
             text(steps.validate("load.transverse", 1.0)),

@@ -327,3 +327,52 @@ pub(crate) fn first<T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
     let held = elements.min(places.len());
     places.get_mut(..held).unwrap_or_default()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::element::Element;
+    use crate::mesh::Mesh;
+    use crate::newton::nested::{self, Answer};
+    use crate::problem::Problem;
+    use crate::profile::Flat;
+    use crate::scene::{Beam, Scene};
+    use crate::{Error, Settings};
+
+    /// Cloned as a generic container would.
+    fn cloned<X: Clone>(x: &X) -> X {
+        x.clone()
+    }
+
+    #[test]
+    fn what_is_copied_is_cloned_the_same() {
+        type Whole = Scene<f64, Beam<f64, f64, f64, f64>>;
+        let scene = Scene::new(1.0, Beam { bending: 5.0, axial: 4.0, piezo: 3.0, permittivity: 2.0 });
+        let element = Element::sample(&scene, 0.0, 0.5, false).unwrap();
+        let mean = |element: &Element<f64, Whole>| {
+            let mean = element.flexibility.mean();
+            [mean.uu, mean.uq, mean.qq]
+        };
+        assert_eq!(mean(&cloned(&element)), mean(&element));
+        assert_eq!(cloned(&element.flexibility).uq, element.flexibility.uq);
+        assert!(cloned(&element).bends_like(&element) && cloned(&element).covers(&element));
+        let _ = cloned(&element.axial);
+        let node = cloned(&Node::<f64, Whole> { u: Flat(3.0), ..Node::default() });
+        assert_eq!(Slot::<f64>::get(node.u), 3.0);
+        let mut place = Place::<f64, Whole>::default();
+        place.work.states[1].e = Pair::of(1.0, 2.0);
+        assert_eq!(cloned(&place.work).states[1].e, place.work.states[1].e);
+        let problem = Problem::new(scene, Mesh::uniform(2)).unwrap();
+        let mut memory = problem.workspace::<8>();
+        let mut prepared = problem.prepare(&mut memory).unwrap();
+        let report = prepared.solve(&Settings::default()).unwrap();
+        assert_eq!(cloned(&prepared.answer.unwrap()).report, report);
+    }
+
+    #[test]
+    fn no_place_at_all_is_an_error() {
+        let scene = Scene::new(1.0, Beam::elastic(1.0));
+        let nothing = nested::solve(&scene, &mut [], &nested::Levels::new(), &Settings::default());
+        assert_eq!(nothing.map(|_: Answer<_, _>| ()), Err(Error::Capacity { needed: 1, available: 0 }));
+    }
+}

@@ -500,3 +500,42 @@ fn unbent_beams_are_not_apart() {
     assert_eq!(distance(bent(1.0, 2), bent(0.0, 4)), Some(f64::INFINITY));
     assert_eq!(distance(bent(0.0, 2), bent(0.0, 5)), None);
 }
+
+#[test]
+fn elements_that_cannot_be_divided_have_no_certificate() {
+    // Beside 1 the next numbers are 1e-16 apart.
+    let nodes = [0.0, 1.0 - 8.0 * f64::EPSILON, 1.0 - 4.0 * f64::EPSILON, 1.0];
+    for most in [4.0, 64.0] {
+        let scene =
+            Scene::new(1.0, Beam::elastic(1.0)).load(Load { transverse: most, axial: (), points: () });
+        let Ok(problem) = Problem::new(scene, Mesh::Nodes(&nodes)) else { continue };
+        let (mut memory, mut finer) = (HeapWorkspace::new(), HeapWorkspace::new());
+        let solution = problem.solve(&mut memory, &settings()).expect("settings");
+        // Refused, or a bound that holds: f^2 L^5 / 720 C is the energy, the mesh is one element.
+        match solution.certify(&mut finer, &settings()) {
+            Ok(found) => assert!(found.bending_bound.is_none_or(|bound| bound > 0.1), "{found:?}"),
+            Err(error) => assert!(matches!(error, Error::Capacity { .. } | Error::Value { .. }), "{error}"),
+        }
+    }
+}
+
+#[test]
+fn a_mesh_does_not_follow_to_another_length() {
+    let scene = |length: f64| {
+        Scene::new(length, Beam::elastic(5000.0))
+            .foundation(Foundation { law: Linear(1e8), gap: () })
+            .load(Load { transverse: 1e6, axial: (), points: () })
+    };
+    let (mut memory, mut other) = (HeapWorkspace::new(), HeapWorkspace::new());
+    let mut adaptive = Adaptive::new(Mesh::uniform(16), &mut memory);
+    let mut alone = Adaptive::new(Mesh::uniform(16), &mut other);
+    let end = |adaptive: &mut Adaptive<'_, f64, _, _>, length: f64| {
+        let scene = scene(length);
+        let found = adaptive.solve(&scene, 1e-6, &settings()).expect("a tolerance");
+        assert_eq!(found.reached, Reached::Tolerance);
+        *found.solution.report()
+    };
+    end(&mut adaptive, 1.0);
+    // As from nothing.
+    assert_eq!(end(&mut adaptive, 2.0), end(&mut alone, 2.0));
+}

@@ -6,8 +6,8 @@ mod common;
 use allocation_counter::measure;
 use common::{fields, fixed, points, tolerances as tol};
 use piezobeam::{
-    Batch, Beam, Conduction, Error, Fields, Foundation, Linear, Load, Mesh, Model, Polynomial, Potential,
-    Power, Scene, Settings, Status, Steps,
+    Batch, Beam, Conduction, Error, Fields, Foundation, Law, Linear, Load, Mesh, Model, Polynomial,
+    Potential, Power, Scene, Settings, Status, Steps, Warning,
 };
 use proptest::prelude::*;
 
@@ -213,5 +213,97 @@ fn the_cap_on_visits_holds_on_a_mesh_too_small_for_coarser_ones() {
             let report = *group.solution(l).expect("solved").report();
             assert!(report.element_visits <= most, "{most}: {report:?}");
         }
+    }
+}
+
+#[test]
+fn more_elements_than_memory_are_refused() {
+    let scenes = [1e6; 4].map(|load| soft(1e8, load));
+    // As many as a mesh may have, in as many lanes as need more than a machine's addresses.
+    let mut batch = Batch::<f64, _, 4>::default();
+    assert_eq!(batch.prepare(&scenes[..0], &Mesh::uniform(20)).map(|group| group.len()), Ok(0));
+    let refused = batch.prepare(&[soft(1e8, 1e6); 4], &Mesh::uniform(100_000_000)).err();
+    if let Some(refused) = refused {
+        assert!(matches!(refused, Error::Capacity { needed, available: 0 } if needed > 400_000_000));
+    }
+}
+
+#[test]
+fn a_group_on_a_rigid_foundation_is_solved_again_with_the_same_bits() {
+    let transverse = Steps { breaks: &[0.5], values: &[1e6, -1e6] };
+    let scenes =
+        [1e6, 1e300].map(|k| {
+            Scene::new(1.0, Beam::elastic(5000.0))
+                .foundation(Foundation { law: Linear(k), gap: () })
+                .load(Load { transverse, axial: (), points: () })
+        });
+    let mut batch = Batch::<f64, _, 2>::new();
+    let mut group = batch.prepare(&scenes, &Mesh::uniform(40)).expect("room");
+    let mut once = || {
+        group.solve(&SETTINGS).expect("settings in range");
+        [0, 1].map(|lane| {
+            let solution = group.solution(lane).expect("solved");
+            (
+                *solution.report(),
+                solution.at(0.3),
+                solution.warnings().iter().any(|warning| matches!(warning, Warning::Rigid { .. })),
+            )
+        })
+    };
+    let first = once();
+    assert!(first.iter().all(|(report, ..)| report.status == Status::Converged));
+    assert!(first[1].2, "taken as rigid, and said");
+    assert_eq!(once(), first);
+}
+
+#[test]
+fn abrupt_meshes_go_in_lockstep_too() {
+    // From short elements to long ones: the part on the left outweighs the next element.
+    let nodes: Vec<f64> = (0..=20)
+        .map(|i| 1e-5 * f64::from(i))
+        .chain((1..=20).map(|i| 2e-4 + 0.04999 * f64::from(i)))
+        .collect();
+    let last = nodes.len() - 1;
+    let nodes: Vec<f64> = nodes.iter().enumerate().map(|(i, &x)| if i == last { 1.0 } else { x }).collect();
+    let scenes = [1e6, 5e5, -1e6].map(|load| soft(1e6, load));
+    let mut batch = Batch::<f64, _, 4>::new();
+    let mesh = Mesh::Nodes(&nodes);
+    assert_eq!(batch.prepare(&scenes, &mesh).expect("room").in_lockstep(), 3);
+    as_alone::<_, 4>(&scenes, mesh);
+}
+
+#[test]
+fn a_law_that_fails_in_one_lane_does_not_spoil_the_others() {
+    let scenes = [1e3, 2e3, 3e4].map(|load| {
+        // No number where the third beam presses.
+        let law = Law(|_: f64, r: f64| if r > 5.0 { (f64::NAN, 1.0) } else { (r, 1.0) });
+        Scene::new(1.0, Beam::elastic(5.0)).foundation(Foundation { law, gap: () }).load(Load {
+            transverse: load,
+            axial: (),
+            points: (),
+        })
+    });
+    let ends = |found: &Found| found.as_ref().map(|(status, _)| *status).map_err(|&error| error);
+    let found = together::<_, 4>(&scenes, &Mesh::uniform(32));
+    assert_eq!(ends(&found[0]), Ok(Status::Converged));
+    assert_eq!(ends(&found[1]), Ok(Status::Converged));
+    assert!(matches!(ends(&found[2]), Ok(Status::LawNotFinite { .. })), "{:?}", ends(&found[2]));
+    as_alone::<_, 4>(&scenes[..2], Mesh::uniform(32));
+}
+
+#[test]
+fn a_potential_beyond_the_number_format_is_no_solution_in_a_batch_either() {
+    let scenes = [1e6, 5e5].map(|load| {
+        Scene::new(1.0, Beam { bending: 5e3, axial: (), piezo: (), permittivity: 1e-300 })
+            .foundation(Foundation { law: Linear(1e6), gap: () })
+            .conduction(Conduction { mu1: (), mu2: 1e300, truncation: 1.0, potential_truncation: 1.0 })
+            .potential(Potential { left: 1.0, right: 1.0 })
+            .load(Load { transverse: load, axial: (), points: () })
+    });
+    for (scene, found) in scenes.iter().zip(together::<_, 2>(&scenes, &Mesh::uniform(32))) {
+        let (status, _) = found.expect("a sound scene");
+        let (report, _) = fields(*scene, Mesh::uniform(32), &[0.5]);
+        assert_eq!(status, report.status);
+        assert!(matches!(status, Status::Breakdown { .. }), "{status:?}");
     }
 }

@@ -6,8 +6,9 @@ mod common;
 use allocation_counter::measure;
 use common::named;
 use piezobeam::{
-    Beam, Conduction, Foundation, HeapWorkspace, Linear, Load, Mesh, Model, Output, Parameter, PointLoad,
-    Potential, Power, Prepared, Problem, Report, Scene, Settings, Status, Steps, Storage, Workspace,
+    Beam, Conduction, Error, Foundation, HeapWorkspace, Linear, Load, Mesh, Model, Output, Parameter,
+    PointLoad, Potential, Power, Prepared, Problem, Report, Scene, Settings, Status, Steps, Storage,
+    Workspace,
 };
 
 /// Bytes per element of a scene of this type.
@@ -165,4 +166,41 @@ fn absent_parts_take_no_room() {
     assert_eq!(size_of_val(&scene.load(Load { transverse: 1.0, axial: (), points: () })), 4 * number);
     assert_eq!(size_of_val(&Load { transverse: (), axial: (), points: () }), 0);
     assert_eq!(size_of_val(&Foundation { law: (), gap: () }), 0);
+}
+
+#[test]
+fn default_memory_is_new_memory() {
+    let scene = full();
+    let problem = Problem::new(&scene, Mesh::uniform(40)).expect("a scene without mistakes");
+    let report = |memory: &mut dyn Storage<f64, _>| {
+        *problem.solve(memory, &Settings::default()).expect("settings in range").report()
+    };
+    let mut fixed = Workspace::<f64, _, 128>::default();
+    let mut heap = HeapWorkspace::default();
+    assert_eq!(report(&mut fixed), report(&mut heap));
+}
+
+#[test]
+fn a_problem_moves_to_another_mesh_and_checks_it() {
+    let on = |elements: usize| {
+        Problem::new(full(), Mesh::uniform(4)).and_then(|problem| problem.on(Mesh::uniform(elements)))
+    };
+    let moved = on(60).expect("a mesh");
+    let made = Problem::new(full(), Mesh::uniform(60)).expect("a scene without mistakes");
+    let (mut one, mut other) = (HeapWorkspace::new(), HeapWorkspace::new());
+    let settings = Settings::default();
+    let moved = moved.solve(&mut one, &settings).expect("settings in range");
+    let made = made.solve(&mut other, &settings).expect("settings in range");
+    assert_eq!((moved.report(), moved.at(0.3)), (made.report(), made.at(0.3)));
+    assert!(matches!(on(0).err(), Some(Error::Value { field: "mesh.elements", .. })));
+}
+
+#[test]
+fn what_nothing_touches_has_no_contact_zone() {
+    let scene = Scene::new(1.0, Beam::elastic(1.0)).load(Load { transverse: 1.0, axial: (), points: () });
+    let problem = Problem::new(scene, Mesh::uniform(4)).expect("a scene without mistakes");
+    let mut memory = HeapWorkspace::new();
+    let solution = problem.solve(&mut memory, &Settings::default()).expect("settings in range");
+    solution.for_each_zone(|a, b| unreachable!("{a} {b}"));
+    assert!(solution.zones().is_empty());
 }

@@ -5,8 +5,9 @@ mod common;
 
 use common::{fixed, named, tolerances as tol};
 use piezobeam::{
-    Beam, BermudezMoreno, Compared, Foundation, HeapWorkspace, Law, Linear, Load, Mesh, Method, Model, Power,
-    Prepared, Problem, Real, Scene, SensitivityError, Settings, Status, Steps, Tabulated,
+    Beam, BermudezMoreno, Compared, Conduction, Foundation, HeapWorkspace, Law, Linear, Load, Mesh, Method,
+    Model, Potential, Power, Prepared, Problem, Real, Scene, SensitivityError, Settings, Status, Steps,
+    Tabulated,
 };
 use proptest::prelude::*;
 
@@ -334,5 +335,59 @@ proptest! {
             let settled = matches!(report.status, Status::OwnEquations | Status::Converged);
             prop_assert!(!settled || lowest_pressure >= -2.0 * settings.stop * size);
         }
+    }
+}
+
+#[test]
+fn a_law_that_is_no_number_ends_a_method_with_its_name() {
+    for (law, negative) in [
+        ((|_: f64, r: f64| (r, f64::NAN)) as fn(f64, f64) -> (f64, f64), false),
+        (|_, _| (f64::INFINITY, 1.0), false),
+        (|_, r| (-r, 1.0), true),
+        (|_, r| (r, -1.0), true),
+    ] {
+        let scene = Scene::new(1.0, Beam::elastic(5.0))
+            .foundation(Foundation { law: Law(law), gap: () })
+            .load(Load { transverse: 1e3, axial: (), points: () });
+        for method in METHODS {
+            let (found, _) = bent(scene, 16, Some(method));
+            let named = match found.report.status {
+                Status::LawNotMonotone { element } => negative && element < 16,
+                Status::LawNotFinite { element } => !negative && element < 16,
+                _ => false,
+            };
+            assert!(named, "{method:?}: {:?}", found.report);
+        }
+    }
+}
+
+#[test]
+fn a_method_that_has_settled_at_rounding_says_so() {
+    let scene = Scene::new(1.0, Beam::elastic(5000.0))
+        .foundation(Foundation { law: Linear(1e4), gap: () })
+        .load(Load { transverse: 1e6, axial: (), points: () });
+    prepared(scene, 200, |beam| {
+        let settings = Settings { stop: 1e-17, ..Settings::default() };
+        let found = beam.solve_by(&Method::Gauss, &settings).expect("settings in range");
+        assert_eq!(found.report.status, Status::ToleranceBelowFloor, "{found:?}");
+        assert!(found.report.residual <= tol::FLOOR);
+    });
+}
+
+#[test]
+fn a_method_whose_potential_overflows_has_not_converged() {
+    let scene = Scene::new(1.0, Beam { bending: 5e3, axial: (), piezo: (), permittivity: 1e-300 })
+        .foundation(Foundation { law: Linear(1e6), gap: () })
+        .conduction(Conduction { mu1: (), mu2: 1e300, truncation: 1.0, potential_truncation: 1.0 })
+        .potential(Potential { left: 1.0, right: 1.0 })
+        .load(Load { transverse: 1e6, axial: (), points: () });
+    for method in METHODS {
+        prepared(scene, 32, |beam| {
+            let found = beam.solve_by(&method, &Settings::default()).expect("settings in range");
+            assert_ne!(found.report.status, Status::Converged, "{method:?}");
+            if method == Method::Gauss {
+                assert!(matches!(found.report.status, Status::Breakdown { .. }), "{found:?}");
+            }
+        });
     }
 }

@@ -95,7 +95,8 @@ fn a_reference_to_a_profile_is_the_profile() {
     let (k, load) =
         (Steps { breaks: &[0.25], values: &[1e7, 1e8] }, Table { x: &[0.0, 1.0], y: &[1e5, 2e5] });
     // The same bits.
-    assert_eq!(solved(stiff, gap, k, load), solved(&stiff, &gap, &k, &load));
+    let (by_stiff, by_gap, by_k, by_load) = (&stiff, &gap, &k, &load);
+    assert_eq!(solved(stiff, gap, k, load), solved(by_stiff, by_gap, by_k, by_load));
     let short = Steps { breaks: &[0.5], values: &[1.0] };
     assert_eq!(Profile::validate(&&short, "gap", 1.0), short.validate("gap", 1.0));
     assert!(short.validate("gap", 1.0).is_err());

@@ -6,11 +6,12 @@ mod common;
 use common::strong::{Numbers, numbers};
 use common::{Full, Shape, named, suite, tolerances as tol};
 use piezobeam::{
-    Beam, Conduction, Foundation, Grazing, HeapWorkspace, Linear, Load, Mesh, Model, Output, Parameter,
-    PointLoad, Potential, Power, Prepared, Problem, Scene, SensitivityError, Settings, Solution, Status,
-    Steps,
+    Beam, Conduction, Curve, Foundation, Grazing, HeapWorkspace, Law, Linear, Load, Mesh, Model, Output,
+    Parameter, PointLoad, Potential, Power, Prepared, Problem, Scene, SensitivityError, Settings, Solution,
+    Status, Steps,
 };
 use proptest::prelude::*;
+use std::cell::Cell;
 
 /// A scene of the suite with concentrated loads.
 type Loaded = Scene<
@@ -789,4 +790,158 @@ fn contact_edges_are_no_grazing_and_touches_are() {
     assert!(matches!(found(0.5), Ok(Some(Grazing::Stretch { .. }))));
     assert_eq!(found(0.4), Ok(None));
     assert_eq!(found(0.6), Ok(None));
+}
+
+#[test]
+fn stretching_alone_has_the_derivatives_of_its_closed_form() {
+    // u = f x (L - x) / 2 EA: per relative change of EA it falls by itself, per relative change of f it grows so.
+    let beam = Beam { bending: 1.0, axial: 50.0, piezo: (), permittivity: () };
+    let scene = Scene::new(2.0, beam).load(Load { transverse: (), axial: 30.0, points: () });
+    prepared(scene, Mesh::uniform(16), &Settings::default(), |beam| {
+        for x in [0.25, 0.8, 1.5] {
+            let u = 30.0 * x * (2.0 - x) / 100.0;
+            let stiffer = beam.tangent(Parameter::Axial).expect("a stiffness").at(x).stretching;
+            assert!((stiffer.expect("stretching") + u).abs() < tol::EXACT, "{x}: {stiffer:?}");
+            let adjoint = beam.adjoint(Output::Stretching(x)).expect("stretching");
+            let (axial, load) = (adjoint.to(Parameter::Axial), adjoint.to(Parameter::AxialLoad));
+            assert!(axial.is_some_and(|by| (by + u).abs() < tol::EXACT), "{x}: {axial:?}");
+            assert!(load.is_some_and(|by| (by - u).abs() < tol::EXACT), "{x}: {load:?}");
+        }
+    });
+}
+
+#[test]
+fn a_potential_alone_has_the_derivatives_of_its_closed_form() {
+    // q is the straight line between its ends.
+    let beam = Beam { bending: 1.0, axial: (), piezo: (), permittivity: 3.0 };
+    let scene = Scene::new(2.0, beam).potential(Potential { left: 1.0, right: -2.0 });
+    prepared(scene, Mesh::uniform(16), &Settings::default(), |beam| {
+        let near = |found: Option<f64>, want: f64| {
+            assert!(found.is_some_and(|found| (found - want).abs() < tol::EXACT), "{found:?} {want}");
+        };
+        for x in [0.25, 0.8, 1.5] {
+            for (end, share) in
+                [(Parameter::LeftPotential, 1.0 - 0.5 * x), (Parameter::RightPotential, 0.5 * x)]
+            {
+                near(beam.tangent(end).expect("a potential").at(x).potential, share);
+                near(beam.adjoint(Output::Potential(x)).expect("a potential").to(end), share);
+            }
+            near(beam.tangent(Parameter::Permittivity).expect("a permittivity").at(x).potential, 0.0);
+            let adjoint = beam.adjoint(Output::Potential(x)).expect("a potential");
+            near(adjoint.to(Parameter::Permittivity), 0.0);
+            for absent in [Parameter::Axial, Parameter::Gap, Parameter::Mu1, Parameter::PointForce(0)] {
+                assert_eq!(adjoint.to(absent), None, "{absent:?}");
+            }
+            near(adjoint.solution().at(x).potential, 1.0 - 1.5 * x);
+        }
+        // Nothing touches, so nothing is at a kink.
+        assert_eq!(beam.grazing(), Ok(None));
+    });
+}
+
+#[test]
+fn the_gap_moves_with_the_gap_alone() {
+    let scene = Scene::new(1.0, Beam::elastic(5000.0))
+        .foundation(Foundation { law: Linear(1e8), gap: 0.01 })
+        .load(Load { transverse: 1e6, axial: (), points: () });
+    prepared(scene, Mesh::uniform(20), &Settings::default(), |beam| {
+        assert_eq!(beam.tangent(Parameter::Gap).expect("a gap").at(0.4).gap, Some(0.01));
+        assert_eq!(beam.tangent(Parameter::Bending).expect("a stiffness").at(0.4).gap, Some(0.0));
+    });
+}
+
+#[test]
+fn a_law_that_changes_its_mind_has_no_derivative_and_is_named() {
+    for bad in [(f64::NAN, 1.0), (1.0, f64::INFINITY), (-1.0, 1.0), (1.0, -1.0)] {
+        let changed = Cell::new(false);
+        let law = Law(|_: f64, r: f64| if changed.get() { bad } else { (1e6 * r, 1e6) });
+        let scene = Scene::new(1.0, Beam::elastic(5.0)).foundation(Foundation { law, gap: () }).load(Load {
+            transverse: 1e3,
+            axial: (),
+            points: (),
+        });
+        prepared(scene, Mesh::uniform(8), &Settings::default(), |beam| {
+            changed.set(true);
+            let refused = beam.tangent(Parameter::Bending).err();
+            assert_eq!(refused, Some(SensitivityError::Law { element: 0 }), "{bad:?}");
+            let refused = beam.adjoint(Output::Bending(0.5)).err();
+            assert_eq!(refused, Some(SensitivityError::Law { element: 0 }), "{bad:?}");
+            changed.set(false);
+            assert!(beam.tangent(Parameter::Bending).is_ok());
+        });
+    }
+}
+
+#[test]
+fn a_derivative_beyond_the_number_format_is_a_breakdown() {
+    // L^3 / 192 C and what goes with it overflow before an element's own stiffness does: the derivative's own number,
+    // or a breakdown.
+    for exponent in -303..-290 {
+        let (length, stiffness) = (1e4_f64, 10_f64.powi(exponent));
+        let scene = Scene::new(length, Beam::elastic(stiffness)).load(Load {
+            transverse: 0.0,
+            axial: (),
+            points: (),
+        });
+        let problem = Problem::new(scene, Mesh::uniform(64)).expect("a scene");
+        let mut memory = HeapWorkspace::new();
+        let mut beam = problem.prepare(&mut memory).expect("memory that grows");
+        if beam.solve(&Settings::default()).expect("settings in range").status != Status::Converged {
+            continue;
+        }
+        match beam.adjoint(Output::Bending(0.5 * length)) {
+            Ok(adjoint) => {
+                let (found, want) =
+                    (adjoint.influence(0.5 * length), length / 192.0 * (length / stiffness * length));
+                assert!((found / want - 1.0).abs() < 1e-6, "{found:e}, {want:e}");
+            }
+            Err(SensitivityError::Breakdown { element }) => {
+                assert!(element < 64);
+            }
+            Err(other) => panic!("{other:?}"),
+        }
+    }
+}
+
+#[test]
+fn the_first_of_several_touches_is_found_and_a_stretch_that_ends_inside() {
+    // No load: the penetration is the gap's negative, which touches zero at 0.2 and at 0.6.
+    let angle = 5.0 * std::f64::consts::PI;
+    let wave = Curve(|x: f64| {
+        let (sine, cosine): (f64, f64) = (angle * x).sin_cos();
+        [1.0 + cosine, -angle * sine, -angle * angle * cosine].map(|value| 1e-3 * value)
+    });
+    let scene = Scene::new(1.0, Beam::elastic(5000.0)).foundation(Foundation { law: Linear(1e3), gap: wave });
+    let scene = scene.load(Load { transverse: 0.0, axial: (), points: () });
+    prepared(scene, Mesh::uniform(200), &Settings::default(), |beam| match beam.grazing() {
+        Ok(Some(Grazing::Touch { x })) => assert!((x - 0.2).abs() < 1e-3, "{x}"),
+        other => panic!("{other:?}"),
+    });
+    // A potential at its truncation counts where the beam is pressed, here on the left.
+    let transverse = Steps { breaks: &[0.5], values: &[1.0, -1.0] };
+    let scene = Scene::new(1.0, Beam { bending: 1.0, axial: (), piezo: (), permittivity: 1.0 })
+        .conduction(Conduction::new(1.0, (), 0.5))
+        .potential(Potential { left: 0.5, right: 0.5 })
+        .load(Load { transverse, axial: (), points: () });
+    let found = |touches: bool| {
+        let none = Scene { ..scene };
+        if touches {
+            let scene = none.foundation(Foundation { law: Linear(10.0), gap: () });
+            prepared(scene, Mesh::uniform(100), &Settings::default(), |beam| beam.grazing())
+        } else {
+            // The potential presses without a foundation's law, too.
+            prepared(none, Mesh::uniform(100), &Settings::default(), |beam| beam.grazing())
+        }
+    };
+    // A current has no kink at the contact's edge, its truncation is far away.
+    let scene =
+        scene.conduction(Conduction { mu1: (), mu2: 1.0, truncation: 0.5, potential_truncation: 0.5 });
+    let current = prepared(scene, Mesh::uniform(100), &Settings::default(), |beam| beam.grazing());
+    assert_eq!(current, Ok(None));
+    for touches in [true, false] {
+        match found(touches) {
+            Ok(Some(Grazing::Stretch { from, to })) => assert!(from == 0.0 && to < 0.6, "{from} {to}"),
+            other => panic!("{other:?}"),
+        }
+    }
 }

@@ -96,19 +96,24 @@ fn hypotheses_that_fail_are_warned_of_with_their_numbers() {
 #[test]
 fn a_kink_of_the_gap_is_warned_of_and_a_break_without_one_is_not() {
     let beam = Scene::new(1.0, Beam::elastic(5000.0)).load(plain(1e3));
-    let gapped = |right: &[f64]| {
-        let gap = Pieces { breaks: &[0.25, 0.5], polynomials: &[&[0.0, 0.0, 1.0], &[0.0, 0.0, 1.0], right] };
+    let gapped = |size: f64, right: [f64; 3]| {
+        let (left, right) = ([0.0, 0.0, size], right.map(|c| size * c));
+        let gap = Pieces { breaks: &[0.25, 0.5], polynomials: &[&left, &left, &right] };
         let (found, said) = warned(beam.foundation(Foundation { law: Linear(1e6), gap }));
         let is_kink = |warning: &Warning<f64>| matches!(warning, Warning::GapKink { .. });
         (found.iter().position(is_kink).map(|i| (found[i], said[i].clone())), found.len())
     };
-    // x^2 throughout: it does not vanish at the right clamp, and that is all.
-    assert_eq!(gapped(&[0.0, 0.0, 1.0]), (None, 1));
-    // (1 - x)^2 from the middle on has the opposite slope there.
-    let (kink, warnings) = gapped(&[1.0, -2.0, 1.0]);
-    let (kink, said) = kink.expect("a kink");
-    assert_eq!((kink, warnings), (Warning::GapKink { x: 0.5 }, 1));
-    assert!(said.contains("kink at x = 0.5"), "{said}");
+    // However small the slopes are.
+    for size in [1.0, 1e-9] {
+        // x^2 throughout: it does not vanish at the right clamp, and that is all. Rounding is no kink.
+        assert_eq!(gapped(size, [0.0, 0.0, 1.0]), (None, 1));
+        assert_eq!(gapped(size, [0.0, 0.0, 1.0 + f64::EPSILON]), (None, 1));
+        // (1 - x)^2 from the middle on has the opposite slope there.
+        let (kink, warnings) = gapped(size, [1.0, -2.0, 1.0]);
+        let (kink, said) = kink.expect("a kink");
+        assert_eq!((kink, warnings), (Warning::GapKink { x: 0.5 }, 1));
+        assert!(said.contains("kink at x = 0.5"), "{said}");
+    }
 }
 
 #[test]

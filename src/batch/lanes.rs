@@ -256,3 +256,37 @@ impl<F: Field> Square<Two<F>, [[F; 2]; 2]> for Four<F> {
         Self([[a, c], [b, d]])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pairs_of_lanes_do_what_pairs_do() {
+        type Scalar = <f64 as Field>::Vec2;
+        let (one, other, by) = ([1.5, -2.0, 3.0, 0.25], [7.0, 0.5, -4.0, 8.0], [3.0, -0.5]);
+        let lanes = |pairs: [f64; 4]| {
+            let [a, b, c, d] = pairs;
+            Two::<Lanes<f64, 2>>::of(Lanes([a, c]), Lanes([b, d]))
+        };
+        let alone = |pairs: [f64; 4], l: usize| Scalar::of(pairs[2 * l], pairs[2 * l + 1]);
+        let mut sum = lanes(one);
+        sum += lanes(other);
+        for l in [0, 1] {
+            let (a, b) = (alone(one, l), alone(other, l));
+            assert_eq!(sum.lane(l), a + b);
+            assert_eq!((lanes(one) - lanes(other)).lane(l), a - b);
+            assert_eq!((-lanes(one)).lane(l), -a);
+            assert_eq!((lanes(one) * Lanes(by)).lane(l), a * by[l]);
+            assert_eq!(lanes(one).times(lanes(other)).lane(l), a.times(b));
+        }
+    }
+
+    #[test]
+    fn lanes_never_wait_for_one_that_is_no_number() {
+        let mixed = Lanes([0.0, 4.0]);
+        assert!(Lanes([f64::NAN, 1.0]).is_number());
+        assert_eq!(mixed.reciprocal(), Some(Lanes([f64::INFINITY, 0.25])));
+        assert!(mixed.exceeds(Lanes([1.0, 3.0])) && !mixed.exceeds(Lanes([0.0, 4.0])));
+    }
+}

@@ -40,22 +40,19 @@ mod tests {
     use super::*;
 
     /// The period that is found of x -> (x + 1) with `tail` numbers before a circle of `period`, and when.
-    fn found(tail: usize, period: usize) -> (usize, usize) {
+    fn found(tail: usize, period: usize) -> Option<(usize, usize)> {
         let mut cycle = Cycle::default();
-        for n in 0.. {
+        (0..1000).find_map(|n| {
             let x = if n < tail { n } else { tail + (n - tail) % period };
-            if let Some(period) = cycle.see([x as f64, 0.5].into_iter()) {
-                return (period, n);
-            }
-        }
-        (0, 0)
+            cycle.see([x as f64, 0.5].into_iter()).map(|period| (period, n))
+        })
     }
 
     #[test]
     fn circles_are_found_soon_with_their_period() {
         for tail in [0, 1, 2, 5, 30] {
             for period in [1, 2, 3, 7, 12] {
-                let (seen, after) = found(tail, period);
+                let (seen, after) = found(tail, period).unwrap();
                 assert_eq!(seen, period);
                 assert!(after <= 3 * tail.max(period) + period + 2, "{tail} {period}: {after}");
             }

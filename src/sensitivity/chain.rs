@@ -390,9 +390,6 @@ fn ends_of_gap<T: Real, M: Model<T>>(view: &Solution<'_, T, M>) -> [T::Vec2; 2] 
 /// What the output weighs of the gap's motion at the clamps and at its kinks, where the weights do not satisfy
 /// the conditions that the penetration's rates do: the forces that hold the weights there, times the motion.
 pub(super) fn held_by_gap<T: Real, M: Model<T>>(view: &Solution<'_, T, M>, output: Output<T>) -> T {
-    if !M::Gap::PRESENT {
-        return T::zero();
-    }
     let forces = |i: usize| {
         let State { e, d } = moved(view, i);
         let solved = view.solved(i);

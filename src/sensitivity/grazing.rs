@@ -246,6 +246,7 @@ mod tests {
     fn extremes_at_zero_are_touches_and_crossings_are_none() {
         assert_eq!(first(&[1.0, 0.5, 1e-12, 0.5, 1.0]), Some(2.0));
         assert_eq!(first(&[-1.0, -0.5, 1e-12, -0.5, -1.0, -2.0]), Some(2.0));
+        assert_eq!(first(&[1.0, 1e-12, 1.0, 0.5, 1.0]), Some(1.0));
         assert_eq!(first(&[1.0, 0.5, 1e-12, -0.5, -1.0]), None);
         assert_eq!(first(&[0.0, 0.5, 1.0, 0.5, 0.0]), None);
         assert_eq!(first(&[0.0, 1e-10, 0.9e-10, 1e-10, -1.0, 0.0]), None);

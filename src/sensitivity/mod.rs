@@ -357,7 +357,7 @@ impl<T: Real, M: Model<T>> Adjoint<'_, T, M> {
                 sum.add(-(m_q * source.q));
             }
         }
-        if parameter == Parameter::Gap {
+        if M::Gap::PRESENT && parameter == Parameter::Gap {
             sum.add(held_by_gap(view, self.output));
         }
         Some(sum.value())

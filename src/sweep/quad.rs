@@ -54,16 +54,17 @@ fn eliminate<T: Real>(a: &T::Mat4, b: &T::Mat4, v: T::Vec4, held: [bool; 4]) -> 
         }
     }
     for i in 0..4 {
+        let scale = unit[i];
         for j in 0..4 {
-            a[i][j] = unit[i] * a[i][j] * unit[j];
+            a[i][j] = scale * a[i][j] * unit[j];
         }
-        b[i] = b[i].map(|x| unit[i] * x);
-        v[i] = unit[i] * v[i];
+        b[i] = b[i].map(|x| scale * x);
+        v[i] = scale * v[i];
     }
     for i in 0..4 {
         let (mut best, mut largest) = (i, a[i][i].abs());
-        for r in i + 1..4 {
-            let size = a[r][i].abs();
+        for (r, row) in a.iter().enumerate().skip(i + 1) {
+            let size = row[i].abs();
             if size > largest {
                 (best, largest) = (r, size);
             }
@@ -100,8 +101,9 @@ fn eliminate<T: Real>(a: &T::Mat4, b: &T::Mat4, v: T::Vec4, held: [bool; 4]) -> 
         v[i] = v[i] / pivot;
     }
     for i in 0..4 {
-        b[i] = b[i].map(|x| unit[i] * x);
-        v[i] = unit[i] * v[i];
+        let scale = unit[i];
+        b[i] = b[i].map(|x| scale * x);
+        v[i] = scale * v[i];
     }
     let finite = v.iter().chain(b.iter().flatten()).all(|x| x.is_finite());
     finite.then(|| (matrix::<T>(b), T::Vec4::of(v)))

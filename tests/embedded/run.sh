@@ -4,8 +4,9 @@
 #
 # usage: tests/embedded/run.sh [all]
 #
-# `all` adds all levels on this machine and AArch64, and prints what the standard library's pow, ln and expm1 change. What is missing is installed by apt-get, where that can be: an
-# emulator and, unless rustup has the targets, Debian's Rust, which brings the sources of `core`.
+# `all` adds all levels on this machine and AArch64, and prints what the standard library's pow, ln and expm1 change.
+# What is missing is installed by apt-get, where that can be: an emulator and, unless rustup has the targets, Debian's
+# Rust, which brings the sources of `core`.
 set -euo pipefail
 cd "$(dirname "$0")"
 which=${1:-few}
@@ -23,7 +24,7 @@ need qemu-system-riscv32 qemu-system-misc
 need node nodejs
 need ld.lld lld
 has_target() { [ -d "$(rustc --print sysroot)/lib/rustlib/$1/lib" ]; }
-triples=(thumbv7em-none-eabihf riscv32imac-unknown-none-elf wasm32-unknown-unknown)
+triples=(thumbv7em-none-eabihf riscv32imac-unknown-none-elf wasm32-unknown-unknown thumbv6m-none-eabi)
 [ "$which" != all ] || triples+=(aarch64-unknown-none)
 for triple in "${triples[@]}"; do
     has_target "$triple" && continue
@@ -66,6 +67,20 @@ board() {
     same "$triple, level $level"
 }
 
+# silent <level> <triple>: what has too little memory for all scenes is linked, searched for what a panic needs, and weighed.
+silent() {
+    CARGO_PROFILE_RELEASE_CODEGEN_UNITS=1 build "$1" "$2" silent "$lld" --gc-sections
+    nm "$image" | grep 'piezobeam' >/dev/null || {
+        echo "$2: no solve in $image" >&2
+        exit 1
+    }
+    if nm "$image" | grep -E 'panicking|_fail|rust_begin_unwind' >&2; then
+        echo "$2, level $1: this can panic" >&2
+        exit 1
+    fi
+    echo "$2, level $1: links, nothing can panic, $(size "$image" | awk 'NR == 2 { print $1 + $2 }') bytes of all kinds of solves"
+}
+
 same() {
     diff "$out/want" "$out/said" >"$out/diff" || {
         echo "$1: other bits than on this machine" >&2
@@ -91,6 +106,7 @@ board s riscv32imac-unknown-none-elf 0x80000000 0x80000000 qemu-system-riscv32 -
 build z wasm32-unknown-unknown page "-Clinker=wasm-ld" --no-entry --export=run
 node page.mjs "$image.wasm" >"$out/said"
 same 'wasm32-unknown-unknown, level z'
+silent s thumbv6m-none-eabi
 if [ "$which" = all ]; then
     for level in 0 1 2 s z; do
         host "$level"
