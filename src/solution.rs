@@ -544,7 +544,7 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
         if M::Mu2::PRESENT && !self.free {
             let g = |y: T| {
                 let r = truncate_positive(self.eta.at(y), conduction.truncation).0;
-                conduction.mu2.value(self.element.x(y), self.mid) * (r * r)
+                conduction.mu2.value(self.element.x(y), self.mid) * r * r
             };
             let current = h * self.between(t, T::one(), g);
             displacement = displacement - current;

@@ -152,6 +152,50 @@ fn up_to_two_at_a_time() {
     }
 }
 
+/// Scenes of four special values that were called converged once and should not have been, or were and no sums could
+/// tell.
+#[test]
+fn four_that_were_wrong() {
+    let place = |name: &str| PLACES.iter().position(|(known, _)| *known == name).expect("a place");
+    let (root, tiny, most) = (f64::MAX.sqrt(), f64::MIN_POSITIVE, f64::MAX);
+    let scenes = [
+        // Conduction cancels a load at the points where both are integrated, and adds to it between them.
+        [("beam.bending", root), ("beam.piezo", 1.0), ("conduction.mu1", most), ("load.transverse", most)],
+        // P^2 is far above EA^2 and far below EA eps.
+        [
+            ("beam.axial", tiny.sqrt()),
+            ("beam.permittivity", most),
+            ("foundation.gap", 1.0),
+            ("load.axial", tiny),
+        ],
+        [
+            ("beam.axial", tiny.sqrt()),
+            ("beam.permittivity", most),
+            ("conduction.mu2", tiny.sqrt()),
+            ("load.axial", 0.0),
+        ],
+        // The square of the penetration is below all numbers, the current is not.
+        [
+            ("beam.permittivity", tiny.sqrt()),
+            ("foundation.gap", 0.0),
+            ("conduction.mu2", most),
+            ("load.transverse", tiny.sqrt()),
+        ],
+        [
+            ("foundation.gap", 0.0),
+            ("conduction.mu2", root),
+            ("load.transverse", tiny.sqrt()),
+            ("load.axial", 0.0),
+        ],
+    ];
+    let mut tally = Tally::default();
+    // The first overflows, and of the fourth the potential has no digits: P^2 is far above EA eps.
+    for scene in scenes {
+        judge(&scene.map(|(name, value)| (place(name), value)), &mut tally);
+    }
+    assert!(tally.wrong.is_empty() && tally.others == 2 && tally.converged == 3, "{tally:#?}");
+}
+
 #[test]
 fn three_at_a_time() {
     judge_all::<f64>(3);

@@ -531,6 +531,22 @@ fn a_beam_without_load_above_its_foundation_is_straight() {
 }
 
 #[test]
+fn a_load_without_digits_does_not_converge_to_them() {
+    // 570 units of the smallest number: what they are rounded to in an element bends the beam 0.4 % off.
+    let at = |load: f64| {
+        let scene = Scene::new(1.0, Beam::elastic(5e-240)).load(plain(load));
+        ends(scene, Mesh::uniform(1), Settings::default())
+    };
+    let lost = at(2.816e-321);
+    assert_eq!(lost.status, Status::ToleranceBelowFloor, "{lost:?}");
+    assert!(lost.residual > 1e-3 && lost.residual == lost.floor, "{lost:?}");
+    // Nine digits that are left, and all.
+    let nine = at(1e-313);
+    assert_eq!(nine.status, Status::ToleranceBelowFloor, "{nine:?}");
+    assert_eq!(at(1e-306).status, Status::Converged);
+}
+
+#[test]
 fn a_halted_solve_of_two_way_conduction_has_its_own_potential() {
     let case = named("coupled-partial");
     let settings = Settings { max_visits: Some(300), ..Settings::default() };

@@ -3,7 +3,7 @@
 use crate::honest;
 use piezobeam::{
     Compliance, Error, Fields, HeapWorkspace, Law, Mesh, Model, Problem, Profile, Real, Settings, Solution,
-    Status, StoragePlace,
+    Status,
 };
 use std::fmt::{self, Debug, Formatter};
 
@@ -75,9 +75,11 @@ pub fn check<T: Real, M: Model<T> + Debug>(scene: M, mesh: Mesh<'_, T>, settings
         panic!("{what}\n{}", said());
     }
     if also.bounds
-        // Not for ever finer meshes.
-        && let Ok(found) = solution.certify(vec![StoragePlace::default(); 16 * report.elements].as_mut_slice(), settings)
+        && let Ok(found) = solution.certify(&mut HeapWorkspace::new(), settings)
     {
+        let cap = settings.max_visits.unwrap_or(400 * 4 * report.elements + 100_000);
+        let (visits, elements) = (found.report.element_visits, found.report.elements);
+        assert!(visits <= cap && elements <= (4 * report.elements).max(cap / 16), "{found:?}\n{}", said());
         let bounds = [found.bending_bound, found.electric_bound].into_iter().flatten();
         assert!({ bounds }.all(|bound| bound >= T::zero()), "{found:?}\n{}", said());
     }

@@ -89,7 +89,9 @@ impl<T: Real, M: Model<T>> Solution<'_, T, M> {
     /// settings out of range.
     ///
     /// # Cost
-    /// Memory for four times the elements; more where they do not resolve the contact's layers, as far as there is.
+    /// Memory for four times the elements; more where they do not resolve the contact's layers, as far as there is, and
+    /// no more elements than a 16th of the visits that are left ([`Settings::max_visits`], of the mesh four times as
+    /// fine, caps all finer meshes together): by default some 100 for each element of this mesh, and 6000.
     /// A solve on the finer mesh, five visits of each of its elements as a rule (they are in the report), and about as
     /// much again for the norms.
     pub fn certify<S: Storage<T, M> + ?Sized>(
@@ -109,11 +111,14 @@ impl<T: Real, M: Model<T>> Solution<'_, T, M> {
             }
             left = whole.element.right;
         }
+        // One cap for all passes.
+        let most_visits = nested::budget(settings, needed).most_visits;
         let (mut elements, mut visits, mut pass) = (needed, 0, 1);
         let mut last = None;
         loop {
             let places = storage::first(memory, elements);
-            let mut answer = nested::sharpen(scene, places, self.rigid, T::one(), settings);
+            let left = Settings { max_visits: Some(most_visits - visits), ..*settings };
+            let mut answer = nested::sharpen(scene, places, self.rigid, T::one(), &left);
             visits += answer.report.element_visits;
             answer.report.element_visits = visits;
             let imbalance = bound::imbalance(scene, places, &answer);
@@ -136,8 +141,12 @@ impl<T: Real, M: Model<T>> Solution<'_, T, M> {
                 return Ok(certificate);
             }
             let shares = Shares { places, shares: 1 - answer.state, join: false };
-            let plan = shares.plan(T::of(0.25) * allowed * allowed, usize::MAX);
-            if plan.elements <= elements || memory.places(plan.elements).len() < plan.elements {
+            // No more elements than the visits that are left allow a solve on.
+            let room = (most_visits - visits) / VISITS;
+            let plan = shares.plan(T::of(0.25) * allowed * allowed, room);
+            if !(elements + 1..=room).contains(&plan.elements)
+                || memory.places(plan.elements).len() < plan.elements
+            {
                 return Ok(certificate);
             }
             divide::remesh(scene, memory, elements, answer.state, plan)?;
@@ -148,6 +157,8 @@ impl<T: Real, M: Model<T>> Solution<'_, T, M> {
 
 /// The second term of the bound over the first, above which it is lowered.
 const SECOND: f64 = 0.2;
+/// Visits of each element that a solve on a finer mesh may take.
+const VISITS: usize = 16;
 /// Finer meshes at most.
 const PASSES: usize = 8;
 

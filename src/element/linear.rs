@@ -225,15 +225,17 @@ pub(crate) fn current<T: Real, M: Model<T>>(
     if let (Side::Above, Some(mu2), Some((stretch, charge))) = (side, element.mu2.constant(), k)
         && eta.side(most) == Side::Below
     {
-        // mu2 and K^-1 stand before the integrals, which are of a polynomial that four points integrate.
+        // K^-1 stands before the integrals, which are of a polynomial that four points integrate. mu2 does not: the
+        // square of a small penetration may be none where mu2 is as large.
         let (mut square, mut lever) = (zero, zero);
         for (t, weight) in gauss::<POINTS>() {
             let r = eta.at(T::of(t));
-            square = square + T::of(weight) * (r * r);
-            lever = lever + T::of(weight * t) * (r * r);
+            let part = T::of(weight) * (mu2 * r * r);
+            square = square + part;
+            lever = lever + T::of(t) * part;
         }
-        source.total = element.h * mu2 * square;
-        let lever = element.h * element.h * mu2 * lever;
+        source.total = element.h * square;
+        let lever = element.h * element.h * lever;
         (source.stretch, source.charge) = (lever * stretch, lever * charge);
         return source;
     }
@@ -242,7 +244,7 @@ pub(crate) fn current<T: Real, M: Model<T>>(
     put(&mut splits, eta.crossings(most));
     touching(&eta, &mut splits).for_each(|(t, weight)| {
         let r = truncate_positive(eta.at(t), most).0;
-        let part = element.h * weight * element.mu2.at(t) * (r * r);
+        let part = element.h * weight * (element.mu2.at(t) * r * r);
         source.total = source.total + part;
         let (stretch, charge) = element.flexibility.integral(t);
         source.stretch = source.stretch + element.h * part * stretch;

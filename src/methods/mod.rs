@@ -319,15 +319,16 @@ impl<T: Real, M: Model<T>> Paper<'_, '_, T, M> {
         let found = level.best.map(|(_, residual)| residual);
         let residual = found.map_or(T::infinity(), |found| found.relative());
         let pulls = lowest.1 < -stop * last.largest_force;
+        let unseen = found.map_or(T::zero(), |found| {
+            nested::unseen(self.context.model, self.places, &self.node, &found, stop)
+        });
         let status = match end {
             End::Halted(halt) => halt.into(),
             End::Circles(period) => Status::Cycle { period },
             End::Settled if pulls => Status::FoundationPulls { element: lowest.0 },
             End::Settled if residual <= stop => match nested::overflown(self.context.model, self.places, 0) {
                 Some(element) => Status::Breakdown { element },
-                None if electric::rounding(self.places, &self.node, stop) > stop => {
-                    Status::ToleranceBelowFloor
-                }
+                None if unseen > stop => Status::ToleranceBelowFloor,
                 None => Status::Converged,
             },
             End::Settled if found.is_some_and(|found| nested::is_rounding(&found)) => {

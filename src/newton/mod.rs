@@ -105,6 +105,15 @@ impl<T: Real> Residual<T> {
         }
     }
 
+    /// What a moment's balance does not see: loads below the normal numbers are rounded to units that are no part of
+    /// their size, force and moment of each element to some of them. Over the largest moment, zero where there is none.
+    pub(crate) fn underflow(&self, elements: usize, length: T) -> T {
+        let unit = T::min_positive_value() * T::epsilon();
+        let elements = T::from(elements).unwrap_or(T::one());
+        let lost = T::of(4.0) * elements * unit * (T::one() + length);
+        if self.size == T::zero() { T::zero() } else { lost / self.size }
+    }
+
     /// Is there no moment at all?
     #[cfg(feature = "alloc")]
     pub(crate) fn is_weightless(&self) -> bool {

@@ -224,6 +224,18 @@ pub(crate) fn overflown<T: Real, M: Model<T>>(
     places.iter().position(|place| !place.is_finite(model, state, &ratio))
 }
 
+/// What the moments' balance does not tell: rounding of the potential, and of loads below the normal numbers. Relative
+/// as the residual is; of less than `stop` it may be zero.
+pub(crate) fn unseen<T: Real, M: Model<T>>(
+    model: &M,
+    places: &[Place<T, M>],
+    left: &Node<T, M>,
+    residual: &Residual<T>,
+    stop: T,
+) -> T {
+    electric::rounding(places, left, stop).max(residual.underflow(places.len(), model.length()))
+}
+
 impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
     /// The answer on the finest mesh, where an iteration ended so.
     fn answer(mut self, outcome: Result<Outcome, Halt>, stop: T, count: &Count) -> Answer<T, M> {
@@ -251,8 +263,9 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
             Some(element) if status == Status::Converged => Status::Breakdown { element },
             _ => status,
         };
-        // The moments' balance does not tell how many digits the potential has.
-        let lost = electric::rounding(self.places, &self.node, stop);
+        let lost = self
+            .best
+            .map_or(T::zero(), |(_, r)| unseen(self.context.model, self.places, &self.node, &r, stop));
         let faint = status == Status::Converged && lost > stop;
         let residual = self.best.map_or(T::infinity(), |(_, r)| r.relative());
         let floor = self.best.map_or(T::zero(), |(_, r)| r.floor());

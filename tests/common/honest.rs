@@ -179,9 +179,10 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
                 value(beam.piezo.value(inside(x), mid)),
                 value(beam.permittivity.value(inside(x), mid)),
             );
-            // Elimination by the larger pivot, which does not overflow where the determinant would.
+            // Elimination by the coupling where its square is above EA eps, else by EA: nothing cancels, and no
+            // determinant over- or underflows.
             let [du, dq, size_u, size_q] = match (M::Axial::PRESENT, M::Permittivity::PRESENT) {
-                (true, true) if p.abs() <= ea => {
+                (true, true) if (p / ea).is_finite() && p.abs() / ea <= eps / p.abs() => {
                     let ratio = p / ea;
                     let under = eps + ratio * p;
                     let dq = (charge - ratio * sigma) / under;
