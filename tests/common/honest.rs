@@ -260,8 +260,9 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
                 let p = or(f.pressure);
                 found.tension = found.tension.max(-p);
                 let r = penetration.at(here).clamp(0.0, most);
-                let drive =
-                    conduction.mu1.value(number(x), mid).f64() * (clamp(potential.at(here), most_q) * r);
+                let mu1 = conduction.mu1.value(number(x), mid).f64();
+                // Without truncations to speak of the product may be infinite where nothing conducts.
+                let drive = if mu1 == 0.0 { mu1 } else { mu1 * (clamp(potential.at(here), most_q) * r) };
                 let net = load.transverse.value(number(x), mid).f64() - p - drive;
                 force += weight * span * net;
                 lever += weight * span * net * (1.0 - t) * span;
