@@ -8,6 +8,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 stored=docs/api.txt
+command -v cargo-public-api >/dev/null || { echo 'cargo-public-api is missing: cargo install cargo-public-api' >&2 && exit 2; }
 list() { cargo +nightly public-api --omit blanket-impls,auto-trait-impls,auto-derived-impls 2>/dev/null; }
 case ${1:-} in
     --store) list >"$stored" ;;
