@@ -339,7 +339,6 @@ pub(crate) fn first<T: Real, M: Model<T>, S: Storage<T, M> + ?Sized>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::Element;
     use crate::mesh::Mesh;
     use crate::newton::nested::{self, Answer};
     use crate::problem::Problem;

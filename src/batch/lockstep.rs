@@ -315,13 +315,6 @@ struct Touching<T: Real, const L: usize> {
     offset: (Two<Lanes<T, L>>, Two<Lanes<T, L>>),
 }
 
-impl<T: Real, const L: usize> Default for Touching<T, L> {
-    fn default() -> Self {
-        let none = Symmetric::default();
-        Self { blocks: (none, <Lanes<T, L> as Field>::Mat2::ZERO, none), offset: Default::default() }
-    }
-}
-
 impl<T: Real, const L: usize> Touching<T, L> {
     /// Sets what one lane has of it.
     fn set(&mut self, l: usize, contact: &Contact<T>, h: T) {
