@@ -357,6 +357,10 @@ fn bad_beams_are_refused_by_field_place_and_value() {
         "beam.bending at x = 1: expected a number > 0 whose reciprocal is finite, found 1e-309",
     );
     refused(beam(1.0, 1.0, NAN, 1.0), &format!("beam.piezo {AT} finite number, found NaN"));
+    let kept = "expected numbers for which P / (EA eps) fits the number format, found";
+    refused(beam(1.0, 1e203, 1.0, 1e204), &format!("beam.permittivity at x = 0.5: {kept} 1e204"));
+    refused(beam(1.0, 1e204, 1.0, 1e203), &format!("beam.axial at x = 0.5: {kept} 1e204"));
+    refused(beam(1.0, 1e100, 1e-280, 1.0), &format!("beam.piezo at x = 0.5: {kept} 1e-280"));
     refused(
         Scene::new(1.0, Beam::elastic(Polynomial(&[1.0, NAN]))),
         "beam.bending[1]: expected a finite number, found NaN",
@@ -544,6 +548,53 @@ fn a_load_without_digits_does_not_converge_to_them() {
     let nine = at(1e-313);
     assert_eq!(nine.status, Status::ToleranceBelowFloor, "{nine:?}");
     assert_eq!(at(1e-306).status, Status::Converged);
+}
+
+#[test]
+fn a_load_below_the_normal_numbers_acts_on_the_length_twice() {
+    let scene = Scene::new(1e6_f32, Beam::elastic(5000.0)).load(Load {
+        transverse: -9.1e-44_f32,
+        axial: (),
+        points: (),
+    });
+    let problem = Problem::new(scene, Mesh::uniform(5)).expect("a scene without mistakes");
+    let mut memory = HeapWorkspace::new();
+    let solution = problem.solve(&mut memory, &Settings::default()).expect("settings in range");
+    assert_eq!(solution.report().status, Status::ToleranceBelowFloor, "{:?}", solution.report());
+}
+
+#[test]
+fn a_law_far_steeper_than_its_slope_has_the_floor_of_its_secants() {
+    let at = |k: f64, nodes| {
+        let law = Law(move |_: f64, r: f64| (k * r, 1e8));
+        let scene =
+            Scene::new(1.0, Beam::elastic(5e3)).foundation(Foundation { law, gap: 1e-3 }).load(plain(1e6));
+        ends(scene, Mesh::Nodes(nodes), Settings { stop: 1e-10, max_visits: Some(500) })
+    };
+    // Were called converged: the penetration is rounding, and so is all that balances the load.
+    let nodes: [&[f64]; 2] = [
+        &[0.0, 1.648_814_032_928_26e-8, 0.003_891_050_583_657_587_6, 1.0],
+        &[0.0, 0.003_891_050_583_657_587_6, 1.0],
+    ];
+    for (k, nodes) in [(2.760_698_538_716_225e72, nodes[0]), (1.159_638_750_323_592_2e45, nodes[1])] {
+        let report = at(k, nodes);
+        assert_eq!(report.status, Status::ToleranceBelowFloor, "{report:?}");
+        assert!(report.floor > 1e-2, "{report:?}");
+    }
+}
+
+#[test]
+fn forces_inside_an_element_do_not_count_as_its_moment() {
+    // A force beside the left clamp of a beam of 18 000 km on a rigid foundation: h times the contact force of the
+    // element beside it, 1e6 times the largest moment, hid that the moments had no digits.
+    let points = [PointLoad { x: 20.179_515_029_868_26, force: 1e12, moment: -1e11 }];
+    let length = 17_782_794.100_389_227;
+    let scene = Scene::new(length, Beam::elastic(5e3))
+        .foundation(Foundation { law: Linear(5_623_413_251_903.491), gap: () })
+        .load(Load { transverse: 1e-10, axial: (), points: points.as_slice() });
+    let report = ends(scene, Mesh::uniform(1), Settings { stop: 1e-6, max_visits: Some(500) });
+    assert_eq!(report.status, Status::ToleranceBelowFloor, "{report:?}");
+    assert!(report.floor > 1e-2, "{report:?}");
 }
 
 #[test]

@@ -86,7 +86,10 @@ pub fn check<T: Real, M: Model<T> + Debug>(scene: M, mesh: Mesh<'_, T>, settings
     // Both ends are clamped, to half the digits of what cancels there.
     let middle = T::of(0.5) * length;
     let flexible = length * length / problem.scene().beam().bending.value(middle, middle);
-    let size = fields.iter().fold(T::zero(), |m, f| {
+    let nodes: Vec<_> = solution.nodes().collect();
+    let inside = nodes.windows(2).map(|pair| pair[0] + T::of(0.5) * (pair[1] - pair[0]));
+    let all = nodes.iter().copied().chain(inside).map(|x| solution.at(x));
+    let size = all.chain(fields).fold(T::zero(), |m, f| {
         let gap = f.gap.map_or(m, T::abs);
         m.max(f.bending.abs()).max(gap).max(f.moment.abs() * flexible)
     });

@@ -88,10 +88,11 @@ impl<T: Real, const L: usize> Slot<T, L> {
         self.bending.times(bend) - self.fe
     }
 
-    /// The larger one of the moments at both ends by force and moment at the left one.
+    /// The larger one of the moments at both ends by force and moment at the left one, and the moment of what is
+    /// `carried` between.
     #[inline(always)]
-    fn moments(&self, force: Two<Lanes<T, L>>) -> Lanes<T, L> {
-        let far = force.y() - Lanes::splat(self.h) * force.x();
+    fn moments(&self, force: Two<Lanes<T, L>>, carried: Lanes<T, L>) -> Lanes<T, L> {
+        let far = force.y() - Lanes::splat(self.h) * force.x() - carried;
         force.y().size().larger(far.size())
     }
 
@@ -153,8 +154,8 @@ impl<T: Real, M: Model<T>, const L: usize> Lockstep<'_, T, M, L> {
         let (mut moved, mut size) = (Lanes::default(), Lanes::default());
         for slot in self.slots.iter_mut().rev() {
             let (e, far) = slot.factor().substitute(near, Lanes::splat(slot.h));
-            moved = slot.moments(slot.bending.times(e - slot.state.e)).larger(moved);
-            size = slot.moments(slot.deforming_force::<M>(e)).larger(size);
+            moved = slot.moments(slot.bending.times(e - slot.state.e), Lanes::default()).larger(moved);
+            size = slot.moments(slot.deforming_force::<M>(e), Lanes::default()).larger(size);
             slot.state = State { e, d: near };
             near = if M::Gap::PRESENT { far + slot.kink() } else { far };
         }
@@ -277,12 +278,12 @@ impl<T: Real, M: Model<T>, const L: usize> Lockstep<'_, T, M, L> {
             let open = Two::of(force.plus(held.x()), moment.plus(held.y()));
             slot.constant = open;
             rest = open.y() - h * open.x();
-            size = slot.moments(held).larger(size);
+            let carried = cd - slot.fr;
+            size = slot.moments(held, carried.y()).larger(size);
             largest = d.x().size().larger(d.y().size()).larger(largest);
             softest = slot.bending.yy.smaller(softest);
             lengths = (lengths.0.min(slot.h), lengths.1.max(slot.h));
             load = load + slot.fr.x().size();
-            let carried = cd - slot.fr;
             moment.add(-(h * force.value()));
             moment.add(carried.y());
             force.add(carried.x());

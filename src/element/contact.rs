@@ -131,6 +131,8 @@ enum Integrals<T> {
         stiffness: [T; 7],
         /// Integrals over t of (tangent stiffness . eta - force) times t^j: zero for a linear law.
         offset: [T; 4],
+        /// Integral over t of what secants of the force are steeper than the tangent, times the size of the terms of eta.
+        steeper: T,
     },
 }
 
@@ -209,7 +211,7 @@ impl<T: Real> Contact<T> {
             add_moments(&mut stiffness, T::of(t), T::of(weight) * tangent);
             add_moments(&mut offset, T::of(t), T::of(weight) * part);
         }
-        Self { force: Integrals::Moments { stiffness, offset } }
+        Self { force: Integrals::Moments { stiffness, offset, steeper: T::zero() } }
     }
 
     /// The same by quadrature between the kinks, whatever the touch.
@@ -226,11 +228,11 @@ impl<T: Real> Contact<T> {
         let bounds = model.conduction();
         let (most, most_q) = (bounds.truncation, bounds.potential_truncation);
         let mut splits = kinks(model, eta, q);
-        let (mut stiffness, mut offset) = ([T::zero(); 7], [T::zero(); 4]);
+        let (mut stiffness, mut offset, mut steeper) = ([T::zero(); 7], [T::zero(); 4], T::zero());
         if let (true, Some(k), None) = (M::Law::LINEAR, element.law.constant(), q) {
             parts_touching(eta, &mut splits)
                 .for_each(|(from, to)| add_powers(&mut stiffness, from, to, scale * k));
-            return Ok(Self { force: Integrals::Moments { stiffness, offset } });
+            return Ok(Self { force: Integrals::Moments { stiffness, offset, steeper } });
         }
         touching(eta, &mut splits).try_for_each(|(t, weight)| {
             let r = eta.at(t);
@@ -255,9 +257,13 @@ impl<T: Real> Contact<T> {
             }
             add_moments(&mut stiffness, t, weight * tangent);
             add_moments(&mut offset, t, weight * (tangent * r - force));
+            // A law of the caller's need not have the slope that it says.
+            if !M::Law::LINEAR && p > dp * r {
+                steeper = steeper + weight * (scale * (p / r - dp)) * Cubic(eta.0.map(T::abs)).at(t);
+            }
             Ok(())
         })?;
-        Ok(Self { force: Integrals::Moments { stiffness, offset } })
+        Ok(Self { force: Integrals::Moments { stiffness, offset, steeper } })
     }
 
     /// The element's energy in (e, d): bending about the gap's own bend, loads, and this contact.
@@ -308,12 +314,13 @@ impl<T: Real> Contact<T> {
     }
 
     /// The size of what cancels in the contact force `cd`: where the element is in contact in part, a stiff
-    /// foundation sees the rounding of all of its penetration.
+    /// foundation sees the rounding of all of its penetration, by the secants of its law where these are steeper than
+    /// the tangent.
     #[inline(always)]
     pub(crate) fn size(&self, motion: &Motion<T>, cd: T::Vec2, h: T) -> T {
-        if let Integrals::Moments { stiffness, .. } = self.force {
+        if let Integrals::Moments { stiffness, steeper, .. } = self.force {
             let terms = stiffness.iter().zip(motion.cubic().0);
-            h * terms.fold(T::zero(), |sum, (moment, c)| sum + (*moment * c).abs())
+            h * terms.fold(steeper, |sum, (moment, c)| sum + (*moment * c).abs())
         } else {
             cd.x().abs()
         }

@@ -16,7 +16,7 @@ use super::contact::{put, touching};
 use super::hermite::Motion;
 use super::{Element, POINTS, Span};
 use crate::cubic::Side;
-use crate::error::Error;
+use crate::error::{Error, Place, expect};
 use crate::law::truncate_positive;
 use crate::profile::{Piece, Profile, Slot};
 use crate::quadrature::gauss;
@@ -76,6 +76,25 @@ pub(crate) fn invert<T: Real, M: Model<T>>(axial: T, piezo: T, permittivity: T) 
     Inverse { uu: permittivity / whole / axial, uq: ratio / whole, qq: T::one() / whole }
 }
 
+/// Refuses a coupling that would be lost where only its part uq of K^-1 is below the normal numbers, and names the
+/// coefficient that makes it so small.
+#[inline(always)]
+fn coupled<T: Real>(inverse: &Inverse<T>, [piezo, axial, permittivity]: [T; 3], mid: T) -> Result<(), Error> {
+    let tiny = |part: T| part.abs() < T::min_positive_value();
+    let lost = tiny(inverse.uq) && !tiny(inverse.qq);
+    if !lost || (tiny(piezo / axial) && tiny(piezo / permittivity)) {
+        return Ok(());
+    }
+    let (field, found) = if piezo.abs().recip() > axial.max(permittivity) {
+        ("beam.piezo", piezo)
+    } else if axial > permittivity {
+        ("beam.axial", axial)
+    } else {
+        ("beam.permittivity", permittivity)
+    };
+    expect(false, field, Place::At(mid.f64()), "numbers for which P / (EA eps) fits the number format", found)
+}
+
 impl<T: Real, M: Model<T>> Flexibility<T, M> {
     /// May it be other than one number on an element?
     pub(crate) const VARIES: bool = !<Joint<T, M> as Piece<T>>::FLAT;
@@ -94,6 +113,9 @@ impl<T: Real, M: Model<T>> Flexibility<T, M> {
         let mut points = [Inverse { uu: T::zero(), uq: T::zero(), qq: T::zero() }; POINTS];
         for (i, point) in points.iter_mut().enumerate() {
             *point = invert::<T, M>(axial[i], piezo[i], permittivity[i]);
+            if M::Piezo::PRESENT {
+                coupled(point, [piezo[i], axial[i], permittivity[i]], span.mid())?;
+            }
         }
         Ok(Self::from_points(points))
     }

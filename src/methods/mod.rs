@@ -320,7 +320,7 @@ impl<T: Real, M: Model<T>> Paper<'_, '_, T, M> {
         let residual = found.map_or(T::infinity(), |found| found.relative());
         let pulls = lowest.1 < -stop * last.largest_force;
         let unseen = found.map_or(T::zero(), |found| {
-            nested::unseen(self.context.model, self.places, &self.node, &found, stop)
+            nested::unseen(self.context.model, self.places, 0, &self.node, &found, stop)
         });
         let status = match end {
             End::Halted(halt) => halt.into(),

@@ -83,10 +83,11 @@ impl<T: Real> Residual<T> {
         self.sum = self.sum + far;
     }
 
-    /// Takes an element's moments at both ends for the size to compare with.
+    /// Takes an element's moments at both ends for the size to compare with: that at its left end is `held` there, and
+    /// the moment of what is `carried` inside, about its right end, is added on the way.
     #[inline(always)]
-    fn measure(&mut self, held: T::Vec2, h: T) {
-        let far = held.y() - h * held.x();
+    fn measure(&mut self, held: T::Vec2, carried: T, h: T) {
+        let far = held.y() - h * held.x() - carried;
         self.size = larger(larger(self.size, held.y().abs()), far.abs());
     }
 
@@ -110,7 +111,9 @@ impl<T: Real> Residual<T> {
     pub(crate) fn underflow(&self, elements: usize, length: T) -> T {
         let unit = T::min_positive_value() * T::epsilon();
         let elements = T::from(elements).unwrap_or(T::one());
-        let lost = T::of(4.0) * elements * unit * (T::one() + length);
+        // A load per length acts on the length twice.
+        let arm = T::one() + length;
+        let lost = T::of(4.0) * elements * unit * arm * arm;
         if self.size == T::zero() { T::zero() } else { lost / self.size }
     }
 
@@ -952,9 +955,9 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             }
             work.open = T::Vec2::of(force.plus(held.x()), moment.plus(held.y()));
             rest = work.open.y() - h * work.open.x();
-            residual.measure(held, h);
-            residual.load = residual.load + contact.size(&motion, cd, h) + element.fr.x().abs();
             let carried = cd - element.fr;
+            residual.measure(held, carried.y(), h);
+            residual.load = residual.load + contact.size(&motion, cd, h) + element.fr.x().abs();
             moment.add(-(h * force.value()));
             moment.add(carried.y());
             force.add(carried.x());

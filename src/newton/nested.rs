@@ -14,7 +14,8 @@ use crate::profile::{Piece, Profile, Smooth};
 use crate::real::{Pair, Real};
 use crate::scene::Model;
 use crate::storage::{Node, Place, State, States};
-use crate::sweep::{Condensed, End};
+use crate::sweep::pair::Bending;
+use crate::sweep::{Block, Condensed, End};
 use crate::{Error, electric};
 use arrayvec::ArrayVec;
 use core::ops::Range;
@@ -39,6 +40,9 @@ const SHORTEST: f64 = 1.2;
 const STRIDE: f64 = 100.0;
 /// Stiffness k L^4 / C with which the continuation starts: contact is a few boundary layers wide.
 const SOFT: f64 = 1e5;
+
+/// Where rounding may make so much of the largest moment, a residual says nothing.
+const BLIND: f64 = 1e-2;
 
 /// A residual of so many times the estimate of its rounding may still be rounding.
 const FLOOR: f64 = 64.0;
@@ -120,10 +124,7 @@ pub(super) fn clamp<T: Real, M: Model<T>>(model: &M, x: T, mid: T) -> End<T, cra
 }
 
 /// Both ends of the beam that was laid into `places`.
-pub(crate) fn ends<T: Real, M: Model<T>>(
-    model: &M,
-    places: &[Place<T, M>],
-) -> [End<T, crate::sweep::pair::Bending>; 2] {
+pub(crate) fn ends<T: Real, M: Model<T>>(model: &M, places: &[Place<T, M>]) -> [End<T, Bending>; 2] {
     let (length, half) = (model.length(), T::of(0.5));
     let h = |place: Option<&Place<T, M>>| place.map_or(length, |place| place.element.h);
     [
@@ -184,13 +185,14 @@ pub(crate) fn quiet<T: Real, M: Model<T>>(model: &M, places: &[Place<T, M>], sto
     if !M::Gap::PRESENT {
         return T::zero();
     }
-    let length = model.length();
-    let mut most = T::zero();
+    let (mut gap, mut bent, mut flexibility) = (T::zero(), T::zero(), T::zero());
     for Place { element, .. } in places {
-        let gap = model.foundation().gap.value(element.right, element.x(T::of(0.5)));
-        let bent = element.bending.times(element.gap.bend::<T>()).y().abs();
-        most = most.max(bent).max(gap.abs() * (element.stiffness() / length / length));
+        gap = gap.max(model.foundation().gap.value(element.right, element.x(T::of(0.5))).abs());
+        bent = bent.max(element.bending.times(element.gap.bend::<T>()).y().abs());
+        // The parts of a beam take a displacement of its ends in series.
+        flexibility = flexibility + element.h / element.stiffness();
     }
+    let most = bent.max(gap / model.length() / flexibility);
     T::of(64.0) * T::epsilon() / stop * most
 }
 
@@ -224,16 +226,38 @@ pub(crate) fn overflown<T: Real, M: Model<T>>(
     places.iter().position(|place| !place.is_finite(model, state, &ratio))
 }
 
-/// What the moments' balance does not tell: rounding of the potential, and of loads below the normal numbers. Relative
-/// as the residual is; of less than `stop` it may be zero.
+/// What the moments' balance does not tell: rounding of the potential, of loads below the normal numbers, and of contact
+/// forces that outweigh all moments; an end of the beam that is not where it is clamped. Relative as the residual is; of
+/// less than `stop` it may be zero.
 pub(crate) fn unseen<T: Real, M: Model<T>>(
     model: &M,
     places: &[Place<T, M>],
+    state: usize,
     left: &Node<T, M>,
     residual: &Residual<T>,
     stop: T,
 ) -> T {
-    electric::rounding(places, left, stop).max(residual.underflow(places.len(), model.length()))
+    let floor = if residual.floor() > T::of(BLIND) { residual.floor() } else { T::zero() };
+    let rounding =
+        electric::rounding(places, left, stop).max(residual.underflow(places.len(), model.length()));
+    floor.max(rounding).max(loose(model, places, state))
+}
+
+/// How far the beam's ends are from where they are clamped, over its largest deflection: moments balance in a beam that
+/// came loose, too. Zero where it is no more than half the digits.
+fn loose<T: Real, M: Model<T>>(model: &M, places: &[Place<T, M>], state: usize) -> T {
+    let (Some(first), Some(last)) = (places.first(), places.last()) else { return T::zero() };
+    let [left, right] = ends(model, places).map(|end| end.value);
+    let length = model.length();
+    let size = |v: T::Vec2| v.x().abs() + length * v.y().abs();
+    let State { e, d } = first.work.states[state];
+    let start = e + Bending::carry(first.element.h, d);
+    let off = size(start - left).max(size(last.work.states[state].d - right));
+    if off <= T::epsilon() * size(start) {
+        return T::zero();
+    }
+    let most = places.iter().fold(size(left), |most, place| most.max(size(place.work.states[state].d)));
+    if off <= T::epsilon().sqrt() * most { T::zero() } else { off / most }
 }
 
 impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
@@ -263,9 +287,9 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
             Some(element) if status == Status::Converged => Status::Breakdown { element },
             _ => status,
         };
-        let lost = self
-            .best
-            .map_or(T::zero(), |(_, r)| unseen(self.context.model, self.places, &self.node, &r, stop));
+        let lost = self.best.map_or(T::zero(), |(_, r)| {
+            unseen(self.context.model, self.places, self.current, &self.node, &r, stop)
+        });
         let faint = status == Status::Converged && lost > stop;
         let residual = self.best.map_or(T::infinity(), |(_, r)| r.relative());
         let floor = self.best.map_or(T::zero(), |(_, r)| r.floor());

@@ -66,11 +66,12 @@ impl Hermite {
         a.abs().max(b.abs()) + da.abs().max(db.abs())
     }
 
-    /// Where the cubic crosses `level` in (0, 1), by bisection between 64 points.
-    fn crossings(&self, level: f64, found: &mut Vec<f64>) {
+    /// Where the cubic crosses `level` between `from` and `to`, by bisection between 64 points.
+    fn crossings(&self, level: f64, [from, to]: [f64; 2], found: &mut Vec<f64>) {
         let above = |t: f64| self.at(t) > level;
+        let point = |i: u32| from + (to - from) * (f64::from(i) / 64.0);
         for i in 0..64_u32 {
-            let (mut a, mut b) = (f64::from(i) / 64.0, f64::from(i + 1) / 64.0);
+            let (mut a, mut b) = (point(i), point(i + 1));
             let side = above(a);
             if above(b) == side {
                 continue;
@@ -131,7 +132,7 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
     let mut sizes = [moment.abs(), 0.0, 0.0, sigma.abs(), charge.abs(), 0.0, q.abs()];
     let mut worst = [0.0_f64; 7];
     let mut found = Departure::default();
-    let (mut lost, mut faint) = (0.0, 0.0);
+    let (mut lost, mut faint, mut sag) = (0.0, 0.0, 0.0);
     // The reaction is a difference of moments over the length of an element, the longest in the left half or half of it.
     let half = 0.5 * scene.length().f64();
     let halves = nodes.windows(2).take_while(|pair| pair[0] < half);
@@ -232,11 +233,18 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
             let attraction = conduction.mu1.value(mid, mid).f64() * potential.largest().min(most_q);
             let stiff = attraction * h * h * h * h > 1e9 * beam.bending.value(mid, mid).f64();
             resolved = resolved && !stiff && !narrow(most, &penetration) && !narrow(most_q, &potential);
-            penetration.crossings(0.0, &mut splits);
-            penetration.crossings(most, &mut splits);
-            potential.crossings(most_q, &mut splits);
-            potential.crossings(-most_q, &mut splits);
+            // A short zone has its own.
+            let bounds: Vec<f64> = [0.0].into_iter().chain(splits.clone()).chain([1.0]).collect();
+            for part in bounds.windows(2).map(|pair| [pair[0], pair[1]]) {
+                penetration.crossings(0.0, part, &mut splits);
+                penetration.crossings(most, part, &mut splits);
+                potential.crossings(most_q, part, &mut splits);
+                potential.crossings(-most_q, part, &mut splits);
+            }
         }
+        // A crossing within rounding of a node is at it.
+        let near = 1e-12_f64.max(8.0 * T::epsilon().f64() * b / h);
+        splits.retain(|t| *t > near && 1.0 - *t > near);
         splits.extend([0.0, 1.0]);
         splits.sort_by(f64::total_cmp);
         for part in splits.windows(2) {
@@ -288,6 +296,8 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
                 let curvature = f.moment.f64() / beam.bending.value(number(x), mid).f64();
                 resolved = resolved && curvature.is_finite();
                 turn += weight * span * curvature;
+                // Rounding of the moments bends, too.
+                sag += weight * span * (drift * length / beam.bending.value(number(x), mid).f64()) * length;
                 lift += weight * span * curvature * (1.0 - t) * span;
                 let s = strains(x, or(f.axial_force), or(f.electric_displacement));
                 // Below the normal numbers coefficients and fluxes have no digits.
@@ -319,7 +329,7 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
             see(&mut worst[4], charge, or(field.electric_displacement), leak);
         }
         let field = at(b);
-        see(&mut worst[1], w, field.bending.f64(), blur[0]);
+        see(&mut worst[1], w, field.bending.f64(), blur[0] + sag);
         see(&mut worst[5], u, or(field.stretching), lost);
         see(&mut worst[6], q, or(field.potential), faint);
         // A load within rounding of a node acts at it.
@@ -345,7 +355,7 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
         }
     }
     // The other end is clamped, too.
-    see(&mut worst[1], w, 0.0, blur[0]);
+    see(&mut worst[1], w, 0.0, blur[0] + sag);
     see(&mut worst[5], u, 0.0, lost);
     if M::Permittivity::PRESENT {
         see(&mut worst[6], q, scene.potential().right.f64(), faint);
