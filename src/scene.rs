@@ -457,12 +457,17 @@ pub(crate) fn next_break<T: Real, M: Model<T>>(model: &M, x: T) -> T {
     if next > length - tiny { length } else { next }
 }
 
-/// The concentrated loads of a node at x: those within rounding of it, as [`next_break`] has it.
-pub(crate) fn points_at<T: Real, M: Model<T>>(model: &M, x: T) -> impl Iterator<Item = &PointLoad<T>> {
+/// The concentrated loads of the node at `right`, each of one node alone: those within rounding of it, as [`next_break`]
+/// has it, but not of the node before it, at `left`.
+pub(crate) fn points_at<T: Real, M: Model<T>>(
+    model: &M,
+    left: T,
+    right: T,
+) -> impl Iterator<Item = &PointLoad<T>> {
     let tiny = T::of(16.0) * T::epsilon() * model.length();
     let points = model.load().points;
-    let first = points.partition_point(|point| x - point.x > tiny);
-    points.iter().skip(first).take_while(move |point| point.x - x <= tiny)
+    let first = points.partition_point(|point| point.x <= left + tiny || right - point.x > tiny);
+    points.iter().skip(first).take_while(move |point| point.x - right <= tiny)
 }
 
 /// Shapes, signs and finiteness of all that needs no mesh.

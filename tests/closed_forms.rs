@@ -505,3 +505,27 @@ fn single_precision(counts: &[u16]) {
         assert!(worst <= bound, "N = {n}: {worst:.1e}, allowed {bound:.1e}");
     }
 }
+
+/// (2.15) with the constants of Poincaré's inequality for a clamped beam, 4.73^2 / L^2, and for H^1_0, pi / L.
+#[test]
+fn the_margins_of_uniqueness_are_those_of_their_formula() {
+    let (length, c, eps): (f64, f64, f64) = (2.0, 3.0, 5.0);
+    let (mu1, mu2, most, most_q) = (0.7, 0.2, 0.3, 0.4);
+    let margins = |mu1: f64, mu2: f64| {
+        let conduction = Conduction { mu1, mu2, truncation: most, potential_truncation: most_q };
+        let scene = Scene::new(length, Beam { bending: c, axial: (), piezo: (), permittivity: eps })
+            .conduction(conduction)
+            .potential(Potential { left: 1.0, right: 1.0 });
+        let found = solved(scene, Mesh::uniform(4), |solution| solution.uniqueness());
+        (found.certified, found.margin_bending, found.margin_electric)
+    };
+    let bent = c * (4.730_040_744_862_704 / length).powi(4) / (mu1 * (most_q + 0.5 * most) + mu2 * most);
+    let charged = eps * (std::f64::consts::PI / length).powi(2) / (mu1 * 0.5 * most + mu2 * most);
+    let near = |got: Option<f64>, want: f64| got.is_some_and(|got| (got - want).abs() <= 1e-14 * want);
+    let (certified, bending, electric) = margins(mu1, mu2);
+    assert!(certified && near(bending, bent) && near(electric, charged), "{bending:?} {electric:?}");
+    // The potential's condition fails first, between these factors.
+    assert!(margins(0.99 * charged * mu1, 0.99 * charged * mu2).0);
+    assert!(!margins(1.01 * charged * mu1, 1.01 * charged * mu2).0);
+    assert_eq!(margins(0.0, 0.0), (true, None, None));
+}

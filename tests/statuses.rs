@@ -598,6 +598,38 @@ fn forces_inside_an_element_do_not_count_as_its_moment() {
 }
 
 #[test]
+fn a_moment_on_the_clamp_itself_hides_no_residual() {
+    let at = |moment: f64| {
+        let points = [PointLoad { x: 1.0 - f64::EPSILON, force: 0.0, moment }];
+        let load = Load { transverse: 1e6, axial: (), points: points.as_slice() };
+        let scene = Scene::new(1.0, Beam::elastic(5e3))
+            .foundation(Foundation { law: Linear(1e8), gap: 1e-3 })
+            .load(load);
+        ends(scene, Mesh::uniform(64), Settings::default())
+    };
+    // Was 2e-307, over the moment that acts on the clamp alone.
+    assert!(at(1e300).residual > 1e-17, "{:?}", at(1e300));
+}
+
+#[test]
+fn loads_closer_than_rounding_act_once() {
+    // Two nodes: the load between them is within rounding of both.
+    let tiny = 16.0 * f32::EPSILON;
+    let points = [0.5, 0.5 + 0.95 * tiny, 0.5 + 1.9 * tiny].map(|x| PointLoad { x, force: 1.0, moment: 0.0 });
+    let load = Load { transverse: 0.0_f32, axial: (), points: points.as_slice() };
+    let problem =
+        Problem::new(Scene::new(1.0, Beam::elastic(1.0)).load(load), Mesh::uniform(2)).expect("a scene");
+    let mut memory = HeapWorkspace::new();
+    let solution = problem.solve(&mut memory, &Settings::default()).expect("settings in range");
+    let all = solution.resultants();
+    assert_eq!(solution.nodes().count(), 4);
+    assert!(
+        (all.load - 3.0).abs() < 1e-5 && (all.left_force + all.right_force + 3.0).abs() < 1e-4,
+        "{all:?}"
+    );
+}
+
+#[test]
 fn a_halted_solve_of_two_way_conduction_has_its_own_potential() {
     let case = named("coupled-partial");
     let settings = Settings { max_visits: Some(300), ..Settings::default() };

@@ -113,7 +113,7 @@ pub(super) fn imbalance<T: Real, M: Model<T>>(
             along.carry(&mut statics);
         }
         mismatch.add(own);
-        for point in scene::points_at(scene, element.right) {
+        for point in scene::points_at(scene, element.right - element.h, element.right) {
             statics.shear.add(point.force);
             statics.moment.add(-point.moment);
         }

@@ -88,11 +88,10 @@ impl<T: Real, const L: usize> Slot<T, L> {
         self.bending.times(bend) - self.fe
     }
 
-    /// The larger one of the moments at both ends by force and moment at the left one, and the moment of what is
-    /// `carried` between.
+    /// The larger one of the moments at both ends by force and moment at the left one.
     #[inline(always)]
-    fn moments(&self, force: Two<Lanes<T, L>>, carried: Lanes<T, L>) -> Lanes<T, L> {
-        let far = force.y() - Lanes::splat(self.h) * force.x() - carried;
+    fn moments(&self, force: Two<Lanes<T, L>>) -> Lanes<T, L> {
+        let far = force.y() - Lanes::splat(self.h) * force.x();
         force.y().size().larger(far.size())
     }
 
@@ -154,8 +153,8 @@ impl<T: Real, M: Model<T>, const L: usize> Lockstep<'_, T, M, L> {
         let (mut moved, mut size) = (Lanes::default(), Lanes::default());
         for slot in self.slots.iter_mut().rev() {
             let (e, far) = slot.factor().substitute(near, Lanes::splat(slot.h));
-            moved = slot.moments(slot.bending.times(e - slot.state.e), Lanes::default()).larger(moved);
-            size = slot.moments(slot.deforming_force::<M>(e), Lanes::default()).larger(size);
+            moved = slot.moments(slot.bending.times(e - slot.state.e)).larger(moved);
+            size = slot.moments(slot.deforming_force::<M>(e)).larger(size);
             slot.state = State { e, d: near };
             near = if M::Gap::PRESENT { far + slot.kink() } else { far };
         }
@@ -279,7 +278,7 @@ impl<T: Real, M: Model<T>, const L: usize> Lockstep<'_, T, M, L> {
             slot.constant = open;
             rest = open.y() - h * open.x();
             let carried = cd - slot.fr;
-            size = slot.moments(held, carried.y()).larger(size);
+            size = held.y().size().larger(size);
             largest = d.x().size().larger(d.y().size()).larger(largest);
             softest = slot.bending.yy.smaller(softest);
             lengths = (lengths.0.min(slot.h), lengths.1.max(slot.h));
@@ -288,6 +287,8 @@ impl<T: Real, M: Model<T>, const L: usize> Lockstep<'_, T, M, L> {
             moment.add(carried.y());
             force.add(carried.x());
         }
+        let last = self.slots.last()?;
+        size = last.moments(last.deforming_force::<M>(last.state.e)).larger(size);
         let slip = rest / Lanes::splat(length);
         let mut right = zero;
         for slot in self.slots.iter() {

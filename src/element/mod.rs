@@ -140,7 +140,7 @@ impl<T: Real, M: Model<T>> Element<T, M> {
             load.transverse.value(x, mid)
         })?;
         let (fe, mut fr) = hermite::loads(h, transverse);
-        for point in points_at(model, right) {
+        for point in points_at(model, left, right) {
             fr += T::Vec2::of(point.force, point.moment);
         }
         let law = span.not_negative("foundation.stiffness", |x| foundation.law.coefficient(x, mid))?;

@@ -83,14 +83,6 @@ impl<T: Real> Residual<T> {
         self.sum = self.sum + far;
     }
 
-    /// Takes an element's moments at both ends for the size to compare with: that at its left end is `held` there, and
-    /// the moment of what is `carried` inside, about its right end, is added on the way.
-    #[inline(always)]
-    fn measure(&mut self, held: T::Vec2, carried: T, h: T) {
-        let far = held.y() - h * held.x() - carried;
-        self.size = larger(larger(self.size, held.y().abs()), far.abs());
-    }
-
     /// The relative residual; zero where there is no moment at all.
     pub(crate) fn relative(&self) -> T {
         if self.mismatch == T::zero() { T::zero() } else { self.mismatch / self.size }
@@ -956,12 +948,16 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             work.open = T::Vec2::of(force.plus(held.x()), moment.plus(held.y()));
             rest = work.open.y() - h * work.open.x();
             let carried = cd - element.fr;
-            residual.measure(held, carried.y(), h);
+            residual.size = larger(residual.size, held.y().abs());
             residual.load = residual.load + contact.size(&motion, cd, h) + element.fr.x().abs();
             moment.add(-(h * force.value()));
             moment.add(carried.y());
             force.add(carried.x());
             node = work.node;
+        }
+        // The right end has no element on its right.
+        if let Some(Place { element, work }) = self.places.last() {
+            residual.size = larger(residual.size, element.largest_moment(work.states[current].e));
         }
         // The first element knows the shear at the left end to N times rounding only, the moments at both ends of
         // the beam know it better: what it is off by grows to `rest` along the beam.

@@ -243,21 +243,25 @@ pub(crate) fn unseen<T: Real, M: Model<T>>(
     floor.max(rounding).max(loose(model, places, state))
 }
 
-/// How far the beam's ends are from where they are clamped, over its largest deflection: moments balance in a beam that
-/// came loose, too. Zero where it is no more than half the digits.
+/// How far the beam's ends are from where they are clamped, over its largest penetration, or slope: moments balance in a
+/// beam that came loose, too. Zero where it is no more than half the digits.
 fn loose<T: Real, M: Model<T>>(model: &M, places: &[Place<T, M>], state: usize) -> T {
     let (Some(first), Some(last)) = (places.first(), places.last()) else { return T::zero() };
     let [left, right] = ends(model, places).map(|end| end.value);
-    let length = model.length();
-    let size = |v: T::Vec2| v.x().abs() + length * v.y().abs();
+    let size = |v: T::Vec2| [v.x().abs(), model.length() * v.y().abs()];
+    let larger = |[a, b]: [T; 2], [c, d]: [T; 2]| [a.max(c), b.max(d)];
     let State { e, d } = first.work.states[state];
     let start = e + Bending::carry(first.element.h, d);
-    let off = size(start - left).max(size(last.work.states[state].d - right));
-    if off <= T::epsilon() * size(start) {
+    let off = larger(size(start - left), size(last.work.states[state].d - right));
+    // A slope that is only rounding is so of the penetration.
+    let over = |[w, slope]: [T; 2]| (off[0] / w).max(off[1] / (w + slope));
+    let few = T::epsilon().sqrt();
+    let near = larger(size(left), size(d));
+    if over(near) <= few {
         return T::zero();
     }
-    let most = places.iter().fold(size(left), |most, place| most.max(size(place.work.states[state].d)));
-    if off <= T::epsilon().sqrt() * most { T::zero() } else { off / most }
+    let loose = over(places.iter().map(|place| size(place.work.states[state].d)).fold(near, larger));
+    if loose <= few { T::zero() } else { loose }
 }
 
 impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {

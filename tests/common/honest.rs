@@ -332,12 +332,13 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
         see(&mut worst[1], w, field.bending.f64(), blur[0] + sag);
         see(&mut worst[5], u, or(field.stretching), lost);
         see(&mut worst[6], q, or(field.potential), faint);
-        // A load within rounding of a node acts at it.
+        // A load within rounding of a node acts at it, and at no other.
         let near = 16.0 * T::epsilon().f64() * scene.length().f64();
-        for point in load.points.iter().filter(|p| (p.x.f64() - b).abs() <= near) {
-            shear += point.force.f64();
-            moment -= point.moment.f64();
-        }
+        let here = |p: &&piezobeam::PointLoad<T>| p.x.f64() > a + near && (p.x.f64() - b).abs() <= near;
+        // Loads at one place are one load: their moments may cancel.
+        let acting = || load.points.iter().filter(here);
+        shear += acting().map(|p| p.force.f64()).sum::<f64>();
+        moment -= acting().map(|p| p.moment.f64()).sum::<f64>();
         if M::Law::PRESENT && penetration.ends[1] >= 0.0 {
             let k = foundation.law.coefficient(number(b), mid);
             let r = penetration.ends[1];
