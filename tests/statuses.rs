@@ -630,6 +630,20 @@ fn loads_closer_than_rounding_act_once() {
 }
 
 #[test]
+fn loads_that_cancel_leave_the_rest_its_digits() {
+    // Moments 1e13 times those of the load between the nodes.
+    let bent = |moment: f64| {
+        let points = [moment, -moment].map(|moment| PointLoad { x: 1.5e-8, force: 0.0, moment });
+        let load = Load { transverse: 1e6, axial: (), points: points.as_slice() };
+        let problem =
+            Problem::new(Scene::new(3e-8, Beam::elastic(5e3)).load(load), Mesh::uniform(8)).expect("a scene");
+        let mut memory = HeapWorkspace::new();
+        problem.solve(&mut memory, &Settings::default()).expect("settings in range").at(1e-8).bending
+    };
+    assert_eq!(bent(1e4).to_bits(), bent(0.0).to_bits());
+}
+
+#[test]
 fn a_halted_solve_of_two_way_conduction_has_its_own_potential() {
     let case = named("coupled-partial");
     let settings = Settings { max_visits: Some(300), ..Settings::default() };

@@ -140,9 +140,9 @@ impl<T: Real, M: Model<T>> Element<T, M> {
             load.transverse.value(x, mid)
         })?;
         let (fe, mut fr) = hermite::loads(h, transverse);
-        for point in points_at(model, left, right) {
-            fr += T::Vec2::of(point.force, point.moment);
-        }
+        // Loads at one place may cancel: their sum first.
+        fr += points_at(model, left, right)
+            .fold(T::Vec2::default(), |sum, point| sum + T::Vec2::of(point.force, point.moment));
         let law = span.not_negative("foundation.stiffness", |x| foundation.law.coefficient(x, mid))?;
         let mu1 = span.not_negative("conduction.mu1", |x| conduction.mu1.value(x, mid))?;
         let mu2 = span.not_negative("conduction.mu2", |x| conduction.mu2.value(x, mid))?;
