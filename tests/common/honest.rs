@@ -153,7 +153,10 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
     let length = scene.length().f64();
     let blur = nodes.windows(2).map(|pair| {
         let mid = number(0.5 * (pair[0] + pair[1]));
-        let gap = foundation.gap.value(number(pair[1]), mid).f64().abs() * 256.0 * T::epsilon().f64();
+        let gap = foundation.gap.value(number(pair[1]), mid).f64().abs();
+        // Of what is below the normal numbers, too.
+        let least = if gap == 0.0 { 0.0 } else { T::min_positive_value().f64() * T::epsilon().f64() };
+        let gap = least.max(gap * 256.0 * T::epsilon().f64());
         [gap, gap * (beam.bending.value(mid, mid).f64() / length / length)]
     });
     let blur = blur.fold([0.0_f64; 2], |m, b| [m[0].max(b[0]), m[1].max(b[1])]);
