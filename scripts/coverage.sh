@@ -1,5 +1,8 @@
 #!/usr/bin/env bash
-# Lines and branches of the library that the tests reach, and the lines that they do not.
+# Lines and branches of the library that the tests reach, and those that they do not.
+#
+# A line counts as reached, and a condition as true or false, where any instance of a generic function says so. (The
+# tables of llvm-cov take each function's best instance, which knows nothing of the others.) Tests are not counted.
 #
 # usage: scripts/coverage.sh [arguments of cargo test, such as --lib --test suite]
 #
@@ -14,14 +17,30 @@ fi
 [ $# -gt 0 ] || set -- --lib --tests
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
-ignored=(--ignore-filename-regex '(tests/|src/bin/|oracle\.rs)')
 cargo +nightly llvm-cov --branch --no-report "$@"
-cargo +nightly llvm-cov report --branch "${ignored[@]}" --summary-only
-cargo +nightly llvm-cov report --branch "${ignored[@]}" --lcov --output-path "$out/lcov"
-echo
-echo 'lines without a test:'
-awk -F '[:,]' -v root="$PWD/" '
-    /^SF:/ { file = substr($0, 4); sub(root, "", file) }
-    /^DA:/ && $3 == 0 { lines[file] = lines[file] " " $2 }
-    END { for (file in lines) print file ":" lines[file] }
-' "$out/lcov" | sort
+cargo +nightly llvm-cov report --branch --ignore-filename-regex '(tests/|src/bin/|oracle\.rs|fault\.rs)' \
+    --lcov --output-path "$out/lcov"
+: >"$out/missed"
+# DA:line,count of a line; BRDA:line,condition,number,count of its conditions: even numbers say true, odd ones false.
+awk -F '[:,]' -v root="$PWD/" -v missed="$out/missed" '
+    /^SF:/ {
+        path = substr($0, 4); file = path; sub(root, "", file)
+        # A file ends with its tests.
+        for (end = 0; (getline text < path) > 0 && text !~ /^mod tests/;) source[++end] = text
+    }
+    /^(DA|BRDA):/ && $2 > end { next }
+    /^DA:/ { lines++ }
+    /^BRDA:/ { branches++ }
+    /^DA:/ && $3 + 0 == 0 { bare++; text = "no test comes here" }
+    /^BRDA:/ && $5 + 0 == 0 { untaken++; text = "condition " $3 + 1 " is never " ($4 % 2 ? "false" : "true") }
+    /^(DA|BRDA):/ && $NF + 0 == 0 {
+        code = source[$2]; sub(/^ */, "", code)
+        print file ":" $2 ": " text ": " code > missed
+    }
+    END {
+        printf "lines: %d of %d, %.1f %%\n", lines - bare, lines, 100 - 100 * bare / lines
+        printf "branches: %d of %d, %.1f %%\n", branches - untaken, branches, 100 - 100 * untaken / branches
+    }
+' "$out/lcov" >"$out/figures"
+sort -t: -k1,1 -k2,2n "$out/missed"
+cat "$out/figures"

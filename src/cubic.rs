@@ -152,8 +152,8 @@ impl<T: Real> Cubic<T> {
             if value.abs() <= noise {
                 continue;
             }
-            let changes = (before < T::zero()) != (value < T::zero()) && before.abs() > noise;
-            if changes && before.is_finite() && value.is_finite() {
+            // A cubic that is not finite has a noise that nothing exceeds.
+            if (before < T::zero()) != (value < T::zero()) && before.abs() > noise {
                 let root = shifted.root_between(from, to, before < T::zero());
                 if root > T::zero() && root < T::one() {
                     let _ = roots.try_push(root);
@@ -263,7 +263,14 @@ mod tests {
         }
         // (t - 1/2)^2 touches zero.
         assert!(Cubic([0.25, -1.0, 1.0, 0.0]).crossings(0.0).len() % 2 == 0);
-        assert!(Cubic([f64::NAN, 1.0, 0.0, 0.0]).crossings(0.0).is_empty());
+        let huge = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1.5e308, -1.5e308];
+        for (i, sign) in (0..4).flat_map(|i| [(i, 1.0), (i, -1.0)]) {
+            for c in huge {
+                let mut cubic = [-sign, 2.0 * sign, 0.5e308 * sign, -1.4e308];
+                cubic[i] = c;
+                assert!(Cubic(cubic).crossings(0.0).is_empty(), "{cubic:?}");
+            }
+        }
         assert!(Cubic([0.0; 4]).crossings(0.0).is_empty());
     }
 

@@ -357,6 +357,8 @@ mod tests {
         assert_eq!(power(0.0_f64, 0.0), 1.0);
         assert_eq!(power(0.0_f64, 0.5), 0.0);
         assert_eq!(power(2.0_f64, 64.0), 18_446_744_073_709_551_616.0);
+        // Beyond, the library's power.
+        assert_eq!(power(2.0_f64, 65.0), 36_893_488_147_419_103_232.0);
         assert_eq!(power(2.0_f32, 1.5), 2.0 * 2.0_f32.sqrt());
     }
 

@@ -532,6 +532,11 @@ mod tests {
         }
         assert!((piece.mean() - (3.0 - 1.0 + 0.5 / 3.0 - 7.0 / 4.0)).abs() < 1e-14);
         assert_eq!(Cubic::from_samples([2.0_f64; 4]).constant(), Some(2.0));
+        for power in 1..4 {
+            let mut cubic = Cubic([2.0, 0.0, 0.0, 0.0]);
+            cubic.0[power] = 1.0;
+            assert_eq!(cubic.constant(), None);
+        }
     }
 
     #[test]

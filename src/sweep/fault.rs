@@ -5,7 +5,7 @@
 
 use crate::{
     Beam, Conduction, Foundation, HeapWorkspace, Linear, Load, Mesh, Model, Output, Parameter, Potential,
-    Problem, Report, Scene, SensitivityError, Settings, Solution, Status, Steps,
+    Problem, Reached, Report, Scene, SensitivityError, Settings, Solution, Status, Steps,
 };
 use std::cell::Cell;
 use std::vec::Vec;
@@ -84,6 +84,23 @@ fn fail_each<M: Model<f64>>(scene: &M, elements: usize) {
         assert_eq!(derivatives(&mut prepared).unwrap(), want, "after factorisation {due}");
     }
     assert!(bits(&prepared.last().unwrap()) == bits(&problem.solve(&mut fresh, &settings).unwrap()));
+
+    // A mesh for an accuracy: of these many, some.
+    set(0);
+    let found = problem.solve_to(&mut fresh, 1e-6, &settings).unwrap();
+    let (want, count) = (bits(&found.solution), set(0));
+    assert_eq!(found.reached, Reached::Tolerance);
+    for due in (1..=count).step_by(count / 50 + 1) {
+        set(due);
+        let found = problem.solve_to(&mut memory, 1e-6, &settings).unwrap();
+        set(0);
+        match found.solution.report().status {
+            Status::Breakdown { .. } => assert_eq!(found.reached, Reached::Unsolved),
+            status => assert_eq!((status, found.reached), (Status::Converged, Reached::Tolerance)),
+        }
+        let again = problem.solve_to(&mut memory, 1e-6, &settings).unwrap();
+        assert!(bits(&again.solution) == want, "the mesh after factorisation {due} failed is another");
+    }
 }
 
 #[test]

@@ -199,3 +199,32 @@ impl<T: Field> Block<T> for Bending {
         s.yy.exceeds(T::of(8.0) * element.yy) || s.xx.exceeds(T::of(512.0) * element.xx)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DMat2, DVec2};
+
+    #[test]
+    fn what_has_no_inverse_is_refused() {
+        for none in [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [1.0, f64::NAN, 1.0]]
+        {
+            let [xx, xy, yy] = none;
+            assert_eq!(Symmetric::<f64>::of(xx, xy, yy).inverse(), None, "{none:?}");
+        }
+        // The determinant is beyond the number format, the inverse is not.
+        let inverse = Symmetric::<f64>::of(1e200, 0.0, 2e200).inverse();
+        assert!(inverse.is_some_and(|s| (1e200 * s.xx - 1.0).abs() + (2e200 * s.yy - 1.0).abs() < 1e-15));
+        let single = |pivot: f64, held| {
+            let a = Symmetric::<f64>::of(pivot, 0.0, pivot);
+            Bending::divide_free(&a, &DMat2::ZERO, DVec2::ONE, held).map(|(_, unknowns)| unknowns)
+        };
+        for pivot in [0.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(single(pivot, [true, false]), None);
+            assert_eq!(single(pivot, [false, true]), None);
+            assert_eq!(single(pivot, [true, true]), Some(DVec2::ZERO));
+        }
+        assert_eq!(single(4.0, [true, false]), Some(DVec2::new(0.0, 0.25)));
+        assert_eq!(single(4.0, [false, true]), Some(DVec2::new(0.25, 0.0)));
+    }
+}

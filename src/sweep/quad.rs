@@ -214,3 +214,39 @@ impl<T: Real> Block<T> for Coupled {
         (0..4).any(|i| s[i][i].abs() > T::of(8.0) * k[i][i].abs())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DMat4, DVec4};
+
+    #[test]
+    fn what_has_no_inverse_is_refused_and_pivots_of_zero_are_exchanged() {
+        let v = DVec4::new(1.0, 2.0, 3.0, 4.0);
+        let divide = |a: DMat4| <Coupled as Block<f64>>::divide(&a, &DMat4::IDENTITY, v);
+        let with = |i: usize, j: usize, x: f64| {
+            let mut columns = DMat4::IDENTITY.to_cols_array_2d();
+            columns[j][i] = x;
+            DMat4::from_cols_array_2d(&columns)
+        };
+        // A row of zeros, one that is no number, one that is another's.
+        assert_eq!(divide(with(2, 2, 0.0)), None);
+        assert_eq!(divide(with(1, 3, f64::INFINITY)), None);
+        assert_eq!(divide(with(1, 3, f64::NAN)), None);
+        assert_eq!(divide(DMat4::from_cols_array(&[1.0; 16])), None);
+        // A quotient beyond the number format.
+        assert_eq!(divide(with(0, 1, 1e308) * DMat4::from_diagonal(DVec4::new(1.0, 10.0, 1.0, 1.0))), None);
+        // The unknowns in another order: no pivot on the diagonal.
+        let turned = DMat4::from_cols(DVec4::Y, DVec4::Z, DVec4::W, DVec4::X);
+        let (inverse, unknowns) = divide(turned).unwrap();
+        assert_eq!((inverse, turned * unknowns), (turned.transpose(), v));
+        // What is held matters to nobody.
+        let held = <Coupled as Block<f64>>::divide_free(
+            &with(2, 2, 0.0),
+            &DMat4::ZERO,
+            v,
+            [false, false, true, false],
+        );
+        assert_eq!(held.map(|(_, unknowns)| unknowns), Some(DVec4::new(1.0, 2.0, 0.0, 4.0)));
+    }
+}
