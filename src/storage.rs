@@ -189,15 +189,14 @@ impl<T: Real, M: Model<T>> Place<T, M> {
         let bending = d.x().abs() + d.y().abs() + slope.abs() * (T::one() + h + T::one() / h);
         let electric = u.get().abs() + tau.abs() + q.get().abs() + charge.abs();
         let sum = bending + electric + ratio.sigma(tau, charge).abs() + self.gradients(model, e, ratio);
-        (sum * T::of(1e8)).is_finite() && (!M::Mu1::PRESENT || self.has_finite_forces(e))
+        (sum * T::of(1e8)).is_finite() && (!Touch::possible::<T, M>() || self.has_finite_forces(e))
     }
 
-    /// Are load, shear and moment within a 64th of the largest number? Conduction may all but cancel a load, and their
-    /// sum between the points where it is integrated be none.
+    /// Are load, shear and moment within a 64th of the largest number? A pressure is larger than the load somewhere,
+    /// conduction may all but cancel it, and their sum between the points where it is integrated be none.
     fn has_finite_forces(&self, e: T::Vec2) -> bool {
-        let held = self.element.deforming_force(e);
-        let forces = self.element.fr.x().abs() / self.element.h + held.x().abs() + held.y().abs();
-        (forces * T::of(64.0)).is_finite()
+        let (held, most) = (self.element.deforming_force(e), T::max_value() / T::of(64.0));
+        self.element.fr.x().abs() <= self.element.h * most && held.x().abs() + held.y().abs() <= most
     }
 
     /// Sizes of curvature, u' and q' by the coefficients at both ends of the element, where profiles may be far from

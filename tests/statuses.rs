@@ -630,6 +630,15 @@ fn loads_closer_than_rounding_act_once() {
 }
 
 #[test]
+fn a_load_at_the_end_of_the_numbers_is_a_breakdown_on_a_foundation() {
+    // The pressure is larger than the load somewhere.
+    let scene = Scene::new(0.1, Beam::elastic(5e3)).foundation(Foundation { law: Linear(1e14), gap: 1e-3 });
+    let report = |load: f64| ends(scene.load(plain(load)), Mesh::uniform(5), Settings::default());
+    assert!(matches!(report(f64::MAX).status, Status::Breakdown { .. }), "{:?}", report(f64::MAX));
+    assert_eq!(report(1e290).status, Status::Converged);
+}
+
+#[test]
 fn loads_that_cancel_leave_the_rest_its_digits() {
     // Moments 1e13 times those of the load between the nodes.
     let bent = |moment: f64| {

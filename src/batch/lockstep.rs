@@ -258,7 +258,7 @@ impl<T: Real, M: Model<T>, const L: usize> Lockstep<'_, T, M, L> {
         let (mut largest, mut softest, mut lengths) =
             (zero, self.slots.first()?.bending.yy, (T::one(), T::one()));
         let (mut mismatch, mut size, mut load, mut sum) = (zero, zero, zero, zero);
-        let mut rest = zero;
+        let (mut rest, mut pushed) = (zero, zero);
         let (mut force, mut moment) = (Sum::<Lanes<T, L>>::default(), Sum::<Lanes<T, L>>::default());
         for i in 0..self.slots.len() {
             let contact = self.contact(i);
@@ -283,6 +283,7 @@ impl<T: Real, M: Model<T>, const L: usize> Lockstep<'_, T, M, L> {
             softest = slot.bending.yy.smaller(softest);
             lengths = (lengths.0.min(slot.h), lengths.1.max(slot.h));
             load = load + slot.fr.x().size();
+            pushed = slot.fr.x().size().larger(pushed);
             moment.add(-(h * force.value()));
             moment.add(carried.y());
             force.add(carried.x());
@@ -298,10 +299,11 @@ impl<T: Real, M: Model<T>, const L: usize> Lockstep<'_, T, M, L> {
             sum = sum + far;
             right = right + Lanes::splat(slot.h);
         }
-        // As `Place::is_finite`: fields are to be well inside the number format.
+        // As `Place::is_finite`: fields are to be well inside the number format, loads within a 64th of it.
+        let pushed = pushed / Lanes::splat(lengths.0) * Lanes::splat(T::of(64e-8));
         let bent = size / softest * Lanes::splat(lengths.1 + T::of(2.0) / lengths.0);
         sum = sum
-            + (largest + bent)
+            + (largest + bent + pushed)
                 .map(|field| if (field * T::of(1e8)).is_finite() { T::ZERO } else { T::infinity() });
         let size = size.larger(quiet);
         Some(core::array::from_fn(|l| {
