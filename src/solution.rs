@@ -564,6 +564,9 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
 
     /// The integral of u' or q' over x from t to the right node.
     fn gathered(&self, t: T, gradient: fn((T, T)) -> T) -> T {
+        if t == T::zero() {
+            return t;
+        }
         let gradient = |y: T| gradient(self.gradients(y));
         // The current makes kinks of the gradients where the contact has its own.
         let integral = if M::Mu2::PRESENT {
@@ -592,8 +595,11 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
         let gap = self.scene.foundation().gap;
         let [s, turn, _] = gap.jet(x, self.mid);
         let (mut bending, mut slope) = (s + self.eta.at(t), turn - self.eta.slope(t) / h);
-        let trust = self.trust();
-        if trust > zero {
+        // A node has the values of its unknowns.
+        let trust = if t == zero { zero } else { self.trust() };
+        if t == zero {
+            slope = turn + self.motion.d.y();
+        } else if trust > zero {
             // Two integrations of the curvature from the right node; what the element's own relative unknowns
             // differ by is laid over the element as its cubic, so that both nodes keep their values.
             let (turn, lift) = self.curvature(t);
