@@ -111,10 +111,11 @@ impl<T: Real, M: Model<T>> Flexibility<T, M> {
         let piezo =
             span.samples::<PieceOf<T, M::Piezo>>("beam.piezo", |x| beam.piezo.value(x, span.mid()))?;
         let mut points = [Inverse { uu: T::zero(), uq: T::zero(), qq: T::zero() }; POINTS];
-        for (i, point) in points.iter_mut().enumerate() {
-            *point = invert::<T, M>(axial[i], piezo[i], permittivity[i]);
+        let coefficients = axial.into_iter().zip(piezo).zip(permittivity);
+        for (point, ((axial, piezo), permittivity)) in points.iter_mut().zip(coefficients) {
+            *point = invert::<T, M>(axial, piezo, permittivity);
             if M::Piezo::PRESENT {
-                coupled(point, [piezo[i], axial[i], permittivity[i]], span.mid())?;
+                coupled(point, [piezo, axial, permittivity], span.mid())?;
             }
         }
         Ok(Self::from_points(points))
