@@ -357,9 +357,10 @@ fn bad_beams_are_refused_by_field_place_and_value() {
         "beam.bending at x = 1: expected a number > 0 whose reciprocal is finite, found 1e-309",
     );
     refused(beam(1.0, 1.0, NAN, 1.0), &format!("beam.piezo {AT} finite number, found NaN"));
-    let kept = "expected numbers for which P / (EA eps) fits the number format, found";
+    let kept = "expected numbers for which P / (EA eps) and P / eps fit the number format, found";
     refused(beam(1.0, 1e203, 1.0, 1e204), &format!("beam.permittivity at x = 0.5: {kept} 1e204"));
     refused(beam(1.0, 1e204, 1.0, 1e203), &format!("beam.axial at x = 0.5: {kept} 1e204"));
+    refused(beam(1.0, 1e-198, 1e-201, 1e277), &format!("beam.permittivity at x = 0.5: {kept} 1e277"));
     refused(beam(1.0, 1e100, 1e-280, 1.0), &format!("beam.piezo at x = 0.5: {kept} 1e-280"));
     refused(
         Scene::new(1.0, Beam::elastic(Polynomial(&[1.0, NAN]))),

@@ -76,13 +76,14 @@ pub(crate) fn invert<T: Real, M: Model<T>>(axial: T, piezo: T, permittivity: T) 
     Inverse { uu: permittivity / whole / axial, uq: ratio / whole, qq: T::one() / whole }
 }
 
-/// Refuses a coupling that would be lost where only its part uq of K^-1 is below the normal numbers, and names the
-/// coefficient that makes it so small.
+/// Refuses a coupling that would be lost where only its part uq of K^-1, or P / eps, is below the normal numbers, and names
+/// the coefficient that makes it so small.
 #[inline(always)]
 fn coupled<T: Real>(inverse: &Inverse<T>, [piezo, axial, permittivity]: [T; 3], mid: T) -> Result<(), Error> {
-    let tiny = |part: T| part.abs() < T::min_positive_value();
-    let lost = tiny(inverse.uq) && !tiny(inverse.qq);
-    if !lost || (tiny(piezo / axial) && tiny(piezo / permittivity)) {
+    let least = T::min_positive_value();
+    let (by_axial, by_permittivity) = (piezo.abs() < least * axial, piezo.abs() < least * permittivity);
+    let lost = inverse.uq.abs() < least || by_permittivity;
+    if !lost || inverse.qq < least || (by_axial && by_permittivity) {
         return Ok(());
     }
     let (field, found) = if piezo.abs().recip() > axial.max(permittivity) {
@@ -92,7 +93,13 @@ fn coupled<T: Real>(inverse: &Inverse<T>, [piezo, axial, permittivity]: [T; 3], 
     } else {
         ("beam.permittivity", permittivity)
     };
-    expect(false, field, Place::At(mid.f64()), "numbers for which P / (EA eps) fits the number format", found)
+    expect(
+        false,
+        field,
+        Place::At(mid.f64()),
+        "numbers for which P / (EA eps) and P / eps fit the number format",
+        found,
+    )
 }
 
 impl<T: Real, M: Model<T>> Flexibility<T, M> {
