@@ -193,7 +193,9 @@ pub(crate) fn quiet<T: Real, M: Model<T>>(model: &M, places: &[Place<T, M>], sto
         flexibility = flexibility + element.h / element.stiffness();
     }
     let most = bent.max(gap / model.length() / flexibility);
-    T::of(64.0) * T::epsilon() / stop * most
+    // Below rounding a residual asks for nothing.
+    let rounding = T::of(64.0) * T::epsilon();
+    rounding / stop.max(rounding) * most
 }
 
 /// The work that `settings` allow on a mesh of so many elements.
