@@ -6,6 +6,7 @@
 
 use crate::electric::Ratio;
 use crate::element::Element;
+use crate::element::contact::Touch;
 use crate::element::linear::Flexibility;
 use crate::profile::{Piece, Profile, Room, Slot};
 use crate::real::{Field, Pair, Real};
@@ -13,8 +14,6 @@ use crate::scene::Model;
 use crate::sweep::pair::Bending;
 use crate::sweep::quad::Coupled;
 use crate::sweep::{Condensed, Factor};
-
-use crate::element::contact::Touch;
 use core::ops::{Index, IndexMut};
 
 /// Fields at a node: u, q and the fluxes. What the scene lacks takes no room.

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{fields, points, relative, solved, tolerances as tol};
+use common::{fields, plain, points, relative, solved, tolerances as tol};
 use piezobeam::{
     Beam, Conduction, Fields, Foundation, Linear, Load, Mesh, Model, PointLoad, Polynomial, Potential, Power,
     Real, Report, Scene, Status, Steps, Table,
@@ -22,17 +22,13 @@ fn free_beam(f: f64, c: f64, length: f64) -> impl Fn(f64) -> f64 {
     move |x| f * x * x * (length - x) * (length - x) / (24.0 * c)
 }
 
-fn transverse<F>(f: F) -> Load<F> {
-    Load { transverse: f, axial: (), points: () }
-}
-
 #[test]
 fn a_free_beam_is_exact_at_every_node_up_to_a_million_elements() {
     let (f, c, length) = (1e6, 5000.0, 1.0);
     let exact = free_beam(f, c, length);
     let most = exact(0.5 * length);
     for n in [10_usize, 100, 1000, 10_000, 100_000, 1_000_000] {
-        let error = solved(Scene::new(length, Beam::elastic(c)).load(transverse(f)), Mesh::uniform(n), |s| {
+        let error = solved(Scene::new(length, Beam::elastic(c)).load(plain(f)), Mesh::uniform(n), |s| {
             converged(s.report());
             let stride = (n / 1000).max(1);
             s.nodes().step_by(stride).map(|x| (s.at(x).bending - exact(x)).abs()).fold(0.0, f64::max)
@@ -56,8 +52,7 @@ fn few_elements_are_exact(counts: &[usize]) {
     let exact = free_beam(f, c, length);
     for &n in counts {
         let x = points(50, length);
-        let (report, at) =
-            fields(Scene::new(length, Beam::elastic(c)).load(transverse(f)), Mesh::uniform(n), &x);
+        let (report, at) = fields(Scene::new(length, Beam::elastic(c)).load(plain(f)), Mesh::uniform(n), &x);
         converged(&report);
         assert_eq!(report.elements, n);
         let want: Vec<f64> = x.iter().map(|&x| exact(x)).collect();
@@ -89,7 +84,7 @@ fn graded_is_exact(ratios: &[f64]) {
     for &ratio in ratios {
         for elements in [4, 10, 100] {
             let mesh = Mesh::Graded { elements, ratio };
-            let (report, at) = fields(Scene::new(l, Beam::elastic(c)).load(transverse(f)), mesh, &x);
+            let (report, at) = fields(Scene::new(l, Beam::elastic(c)).load(plain(f)), mesh, &x);
             assert!(relative(&bending(&at), &want) <= tol::EXACT, "{ratio:e}, {elements}");
             converged(&report);
         }
@@ -105,9 +100,9 @@ fn breaks_that_crowd_are_no_harm() {
     let x = points(20, 1.0);
     for n in [4, 10, 100] {
         let on = Scene::new(1.0, Beam::elastic(1.0));
-        let (report, got) = fields(on.load(transverse(load)), Mesh::uniform(n), &x);
+        let (report, got) = fields(on.load(plain(load)), Mesh::uniform(n), &x);
         converged(&report);
-        let (_, want) = fields(on.load(transverse(half)), Mesh::uniform(n), &x);
+        let (_, want) = fields(on.load(plain(half)), Mesh::uniform(n), &x);
         assert!(relative(&bending(&got), &bending(&want)) <= tol::CROWD, "N = {n}");
     }
 }
@@ -220,9 +215,8 @@ fn full_contact_is_a_beam_on_springs() {
     for exponent in -3..=6 {
         let stiffness = 10.0_f64.powi(exponent);
         let k = stiffness * c / l.powi(4);
-        let scene = Scene::new(l, Beam::elastic(c))
-            .foundation(Foundation { law: Linear(k), gap: () })
-            .load(transverse(f));
+        let scene =
+            Scene::new(l, Beam::elastic(c)).foundation(Foundation { law: Linear(k), gap: () }).load(plain(f));
         let (report, at) = fields(scene, Mesh::uniform(n as usize), &x);
         converged(&report);
         let want: Vec<f64> = x.iter().map(|x| f * l.powi(4) / c * winkler(x / l - 0.5, stiffness)).collect();
@@ -238,7 +232,7 @@ fn a_beam_does_not_sag_between_nodes_into_a_foundation_stiffer_than_its_elements
     for k in [1e14, 1e16, 1e20] {
         let scene = Scene::new(1.0, Beam::elastic(5000.0))
             .foundation(Foundation { law: Linear(k), gap: () })
-            .load(transverse(f));
+            .load(plain(f));
         let (report, at) = fields(scene, Mesh::uniform(50), &x);
         converged(&report);
         for at in at {
@@ -268,7 +262,7 @@ fn preload_shifts_the_load(n: u32, scenes: &[(f64, f64)]) {
         let k: f64 = stiffness * c / l.powi(4);
         let scene = Scene::new(l, Beam::elastic(c))
             .foundation(Foundation { law: Linear(k), gap: -preload })
-            .load(transverse(f));
+            .load(plain(f));
         let (report, at) = fields(scene, Mesh::uniform(n as usize), &x);
         converged(&report);
         assert!(at.iter().all(|f| f.pressure > Some(0.0)), "contact everywhere");
@@ -299,7 +293,7 @@ fn a_gap_out_of_reach_changes_nothing_on_fine_meshes() {
 fn out_of_reach(counts: &[usize]) {
     let (c, l, f) = (5.0, 1.0, 3.0);
     let x = points(64, l);
-    let free = Scene::new(l, Beam::elastic(c)).load(transverse(f));
+    let free = Scene::new(l, Beam::elastic(c)).load(plain(f));
     let far = free.foundation(Foundation { law: Linear(1e12), gap: 0.1 });
     for &n in counts {
         let (_, want) = fields(free, Mesh::uniform(n), &x);
@@ -455,7 +449,7 @@ fn a_stiffness_that_varies_is_as_good_on_few_elements_as_on_many() {
     let beam = Beam::elastic(Polynomial(&[1.0, 3.0, -2.0, 5.0]));
     let scene = Scene::new(1.0, beam)
         .foundation(Foundation { law: Linear(Polynomial(&[2e3, -1e3])), gap: () })
-        .load(transverse(Polynomial(&[50.0, -30.0])));
+        .load(plain(Polynomial(&[50.0, -30.0])));
     let x = points(32, 1.0);
     let (report, coarse) = fields(scene, Mesh::uniform(64), &x);
     converged(&report);
@@ -473,7 +467,7 @@ fn a_step_in_the_stiffness_by_ten_powers_of_ten_is_exact() {
     let beam = Beam::elastic(Steps { breaks: &[0.5], values: &values });
     let x = points(32, 0.5);
     for n in [3, 4, 10, 1000] {
-        let (report, at) = fields(Scene::new(1.0, beam).load(transverse(f)), Mesh::uniform(n), &x);
+        let (report, at) = fields(Scene::new(1.0, beam).load(plain(f)), Mesh::uniform(n), &x);
         converged(&report);
         let exact = free_beam(f, soft, 0.5);
         let want: Vec<f64> = x.iter().map(|&x| exact(x)).collect();
@@ -495,7 +489,7 @@ fn single_precision_keeps_its_digits_up_to_ten_thousand_elements() {
 fn single_precision(counts: &[u16]) {
     let (f, c) = (3.0_f32, 5.0_f32);
     for &n in counts {
-        let scene = Scene::new(1.0_f32, Beam::elastic(c)).load(transverse(f));
+        let scene = Scene::new(1.0_f32, Beam::elastic(c)).load(plain(f));
         let worst = solved(scene, Mesh::uniform(n.into()), |s| {
             converged(s.report());
             let exact = |x: f32| f * x * x * (1.0 - x) * (1.0 - x) / (24.0 * c);

@@ -3,28 +3,15 @@
 
 mod common;
 
-use common::{fields, named, points, relative, tolerances as tol};
+use common::{fields, halves, named, plain, points, relative, tolerances as tol};
 use piezobeam::{
     Adaptive, Batch, Beam, Conduction, Error, Fields, Foundation, Function, Grazing, HeapWorkspace, History,
     Linear, Load, Mesh, Method, Model, Output, Parameter, PointLoad, Polynomial, Potential, Power, Problem,
     Reached, Resultants, Scene, SensitivityError, Settings, Solution, Status, Steps, Table,
 };
 
-fn plain(transverse: f64) -> Load<f64> {
-    Load { transverse, axial: (), points: () }
-}
-
 fn capped(most: usize) -> Settings<f64> {
     Settings { max_visits: Some(most), ..Settings::default() }
-}
-
-/// Pressed onto the foundation on the left half, lifted on the right one.
-fn halves(k: f64) -> impl Model<f64> + Copy {
-    Scene::new(1.0, Beam::elastic(5000.0)).foundation(Foundation { law: Linear(k), gap: () }).load(Load {
-        transverse: Steps { breaks: &[0.5], values: &[1e6, -1e6] },
-        axial: (),
-        points: (),
-    })
 }
 
 fn bending(fields: &[Fields<f64>]) -> Vec<f64> {

@@ -5,7 +5,7 @@
 
 mod common;
 
-use common::{honest, points, tolerances as tol};
+use common::{honest, plain, points, tolerances as tol};
 use piezobeam::{
     Beam, Conduction, Curve, Error, Foundation, Function, HeapWorkspace, History, Law, Linear, Load, Mesh,
     Model, Potential, Problem, Reached, Report, Scene, Settings, Solution, Status, StoragePlace,
@@ -91,10 +91,6 @@ fn blow_at_every_call<M: Model<f64>>(
 }
 
 const BAD: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
-
-fn plain(transverse: f64) -> Load<f64> {
-    Load { transverse, axial: (), points: () }
-}
 
 #[test]
 fn profiles_that_fail_at_any_call() {

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{fixed, named, tolerances as tol};
+use common::{fixed, halves, named, tolerances as tol};
 use piezobeam::{
     Beam, BermudezMoreno, Compared, Conduction, Foundation, HeapWorkspace, Law, Linear, Load, Mesh, Method,
     Model, Potential, Power, Prepared, Problem, Real, Scene, SensitivityError, Settings, Status, Steps,
@@ -13,16 +13,6 @@ use proptest::prelude::*;
 
 const DUAL: Method<f64> = Method::BermudezMoreno(BermudezMoreno { omega: None, mu: None, rho: None });
 const METHODS: [Method<f64>; 3] = [Method::Elementwise, Method::Gauss, DUAL];
-
-/// The load that presses the left half and lifts the right one, of the tables in the design of the method.
-fn halves(k: f64) -> impl Model<f64> {
-    let transverse = Steps { breaks: &[0.5], values: &[1e6, -1e6] };
-    Scene::new(1.0, Beam::elastic(5000.0)).foundation(Foundation { law: Linear(k), gap: () }).load(Load {
-        transverse,
-        axial: (),
-        points: (),
-    })
-}
 
 /// One load over one gap.
 fn gap() -> impl Model<f64> {

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{named, points, tolerances as tol};
+use common::{named, plain, points, tolerances as tol};
 use piezobeam::{
     Beam, Conduction, Curve, Foundation, Function, HeapWorkspace, Law, Linear, Load, Mesh, Model, PointLoad,
     Polynomial, Potential, Power, Problem, Real, Report, Scene, Settings, Status, Steps, Table, Tabulated,
@@ -26,10 +26,6 @@ fn ends<T: Real, M: Model<T>>(scene: M, mesh: Mesh<'_, T>, settings: Settings<T>
     assert!(name.chars().all(|c| c.is_ascii_lowercase() || c == '_'), "{name}");
     assert!(!report.status.to_string().is_empty());
     report
-}
-
-fn plain(f: f64) -> Load<f64> {
-    Load { transverse: f, axial: (), points: () }
 }
 
 /// A stop and the default cap.

@@ -2,8 +2,8 @@
 #![allow(dead_code, unreachable_pub, reason = "each test binary uses its own part")]
 
 use piezobeam::{
-    Beam, Conduction, Cubic, Error, Fields, Flat, Foundation, HeapWorkspace, Load, Mesh, Model, Potential,
-    Power, Problem, Profile, Real, Report, Scene, Settings, Smooth, Solution,
+    Beam, Conduction, Cubic, Error, Fields, Flat, Foundation, HeapWorkspace, Linear, Load, Mesh, Model,
+    Potential, Power, Problem, Profile, Real, Report, Scene, Settings, Smooth, Solution, Steps,
 };
 use proptest::test_runner::{Config as ProptestConfig, RngAlgorithm, RngSeed};
 use serde_json::Value;
@@ -165,6 +165,19 @@ pub fn solved<T: Real, M: Model<T>, R>(
 /// Report and fields at `x` of a scene.
 pub fn fields<T: Real, M: Model<T>>(scene: M, mesh: Mesh<'_, T>, x: &[T]) -> (Report<T>, Vec<Fields<T>>) {
     solved(scene, mesh, |s| (*s.report(), x.iter().map(|&x| s.at(x)).collect()))
+}
+
+/// A transverse load alone.
+pub fn plain<F>(transverse: F) -> Load<F> {
+    Load { transverse, axial: (), points: () }
+}
+
+/// The load that presses the left half onto the foundation and lifts the right one, of the tables in the design of the
+/// method.
+pub fn halves(k: f64) -> impl Model<f64> + Copy {
+    Scene::new(1.0, Beam::elastic(5000.0))
+        .foundation(Foundation { law: Linear(k), gap: () })
+        .load(plain(Steps { breaks: &[0.5], values: &[1e6, -1e6] }))
 }
 
 /// `n` + 1 points from 0 to `length`.

@@ -7,6 +7,7 @@ use crate::tasks;
 use csv::{Writer, WriterBuilder};
 use piezobeam::{Error, HeapWorkspace, Model, Problem, Real, Solution};
 use serde::Serialize;
+use std::cmp::Ordering;
 use std::fmt::Display;
 
 /// What a column holds.
@@ -105,7 +106,7 @@ fn on_one_line(text: String) -> String {
 
 /// Parts of the beam at least at whose ends the bending is looked at, before it is found exactly between two of them.
 const PARTS: usize = 128;
-/// Summits within 1 % of the highest that are compared exactly: between two points the bending rises by less.
+/// Of the summits within 1 % of the highest of these points, so many are compared exactly.
 const SUMMITS: usize = 3;
 const NEAR: f64 = 0.99;
 /// Halvings that reach the last digit.
@@ -122,12 +123,15 @@ fn summit<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> (T, T) {
         inner.map(|(pair, i)| if i == parts { pair[1] } else { pair[0] + (pair[1] - pair[0]) * share(i) });
     let looked: Vec<(T, T)> = [nodes[0]].into_iter().chain(points).map(|x| (x, bending(x))).collect();
     let most = looked.iter().fold(T::zero(), |most, &(_, w)| most.max(w.abs()));
+    let height = |three: &[(T, T)]| three[1].1.abs();
     let is_summit = |three: &&[(T, T)]| {
-        let [before, here, after] = [0, 1, 2].map(|i: usize| three[i].1.abs());
+        let (before, here, after) = (three[0].1.abs(), height(three), three[2].1.abs());
         here > T::zero() && here >= before && here >= after && here >= T::of(NEAR) * most
     };
+    let mut summits: Vec<_> = looked.windows(3).filter(is_summit).collect();
+    summits.sort_by(|a, b| height(b).partial_cmp(&height(a)).unwrap_or(Ordering::Equal));
     let mut highest = (T::zero(), T::zero());
-    for three in looked.windows(3).filter(is_summit).take(SUMMITS) {
+    for three in summits.into_iter().take(SUMMITS) {
         let found = three[1];
         // The size grows on the left of its summit and shrinks on the right.
         let grows = |x: T| solution.at(x).slope * found.1 > T::zero();
