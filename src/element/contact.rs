@@ -61,14 +61,8 @@ impl Touch {
         if !M::Law::LINEAR || element.law.constant().is_none() {
             return Self::Mixed;
         }
-        let Some(q) = q.filter(|_| element.conducts_onto()) else { return Self::Full };
+        let Some(q) = q.filter(|_| element.is_driven(model)) else { return Self::Full };
         let bounds = model.conduction();
-        if let (Some(mu1), Some(k)) = (element.mu1.constant(), element.law.constant())
-            && mu1 * bounds.potential_truncation <= T::epsilon() * k
-        {
-            // Less than the rounding of the law's own force.
-            return Self::Full;
-        }
         if element.mu1.constant().is_none() || eta.side(bounds.truncation) != Side::Below {
             return Self::Mixed;
         }
@@ -455,6 +449,18 @@ impl<T: Real, M: Model<T>> Element<T, M> {
     #[inline(always)]
     pub(crate) fn conducts_onto(&self) -> bool {
         M::Mu1::PRESENT && self.mu1.constant() != Some(T::zero())
+    }
+
+    /// The same, and is that part, mu1 M at most beside k, more than the rounding of a linear law's own force?
+    #[inline(always)]
+    pub(crate) fn is_driven(&self, model: &M) -> bool {
+        let faint = match (self.mu1.constant(), self.law.constant()) {
+            (Some(mu1), Some(k)) if M::Law::LINEAR => {
+                mu1 * model.conduction().potential_truncation <= T::epsilon() * k
+            }
+            _ => false,
+        };
+        self.conducts_onto() && !faint
     }
 
     /// Has the conduction current mu2 R~(eta)^2 a part here?

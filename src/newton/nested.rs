@@ -167,7 +167,7 @@ pub(crate) fn context<'a, T: Real, M: Model<T>>(
     stop: T,
 ) -> Context<'a, T, M> {
     let [left, right] = ends(model, places);
-    let first = places.first().filter(|_| electric::conducts_onto(places));
+    let first = places.first().filter(|_| places.iter().any(|place| place.element.is_driven(model)));
     Context {
         model,
         left,
