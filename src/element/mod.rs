@@ -162,17 +162,20 @@ impl<T: Real, M: Model<T>> Element<T, M> {
         self.bending.yy * self.h * T::of(0.25)
     }
 
-    /// The stiffness of a foundation that is rigid to this element \[N/m^2\].
-    pub(crate) fn rigid(&self) -> T {
+    /// C / h^4, the stiffness of a foundation that gives way like this element \[N/m^2\].
+    pub(crate) fn own(&self) -> T {
         // 4 C / h is the last entry of the bending energy.
-        let stiffness = T::of(0.25) * self.bending.yy / self.h / self.h / self.h;
-        stiffness * T::of(RIGID).min(T::of(1e-3) / T::epsilon())
+        T::of(0.25) * self.bending.yy / self.h / self.h / self.h
     }
 
-    /// Takes the law's coefficient for one that is at most as stiff as is rigid to this element.
-    pub(crate) fn soften(&mut self, law: &M::Law) {
-        let rigid = self.rigid();
-        let samples = gauss::<POINTS>().map(|(t, _)| law.at_most(self.law.at(T::of(t)), rigid));
+    /// The stiffness of a foundation that is rigid to this element \[N/m^2\].
+    pub(crate) fn rigid(&self) -> T {
+        self.own() * T::of(RIGID).min(T::of(1e-3) / T::epsilon())
+    }
+
+    /// Takes the law's coefficient for one that is at most as stiff as `most`.
+    pub(crate) fn soften(&mut self, law: &M::Law, most: T) {
+        let samples = gauss::<POINTS>().map(|(t, _)| law.at_most(self.law.at(T::of(t)), most));
         self.law = Piece::from_samples(samples);
     }
 

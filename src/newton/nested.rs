@@ -41,6 +41,9 @@ const STRIDE: f64 = 100.0;
 /// Stiffness k L^4 / C with which the continuation starts: contact is a few boundary layers wide.
 const SOFT: f64 = 1e5;
 
+/// k h^4 / C of a foundation whose layers are a sixth of an element wide: as stiff as it makes sense on a coarser mesh.
+const SHARPEST: f64 = 4096.0;
+
 /// Where rounding may make so much of the largest moment, a residual says nothing.
 const BLIND: f64 = 1e-2;
 
@@ -88,6 +91,11 @@ pub(crate) fn coarsen<T: Real, M: Model<T>>(
             }
             let Some(place) = rest.get_mut(made) else { break };
             place.element = Element::merge(fine.get(from..to).unwrap_or_default());
+            // What is rigid to coarse elements makes them touch here and there: it is for the finer ones.
+            if pressed == [false; 2] {
+                let most = T::of(SHARPEST) * place.element.own();
+                place.element.soften(model.foundation().law, most);
+            }
             made += 1;
             from = to;
         }
@@ -452,7 +460,8 @@ pub(crate) fn sharpen<T: Real, M: Model<T>>(
 /// Takes the foundation for one that is at most as stiff as is rigid to each element.
 fn soften<T: Real, M: Model<T>>(model: &M, places: &mut [Place<T, M>]) {
     for place in places {
-        place.element.soften(model.foundation().law);
+        let most = place.element.rigid();
+        place.element.soften(model.foundation().law, most);
     }
 }
 
