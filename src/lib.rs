@@ -24,7 +24,7 @@
 //! 2. Contact is integrated exactly at its edges: elements are split where the penetration, or a
 //!    truncation, has its kink. The order is four with any contact.
 //! 3. Newton's method on a block Thomas recursion that sweeps from both ends; only elements between the
-//!    outermost changed ones are swept again.
+//!    outermost changed ones are swept again, and within a step the contact's edges are iterated by themselves.
 //! 4. Nested meshes, with a continuation in the stiffness on the coarsest, so that a nearly rigid foundation
 //!    costs no iterations on the finest.
 //! 5. u and q by sums of fluxes, exact at nodes. A last sweep for an increment takes out the rounding.

@@ -334,7 +334,7 @@ impl<T: Real, M: Model<T>, const L: usize> Group<'_, T, M, L> {
                 element_visits: visits,
                 elements,
             };
-            let answer = Answer { report, state: 0, left, meeting: None, rigid: false };
+            let answer = Answer { report, state: 0, left, meeting: None, size: T::zero(), rigid: false };
             if let Some(lane) = self.batch.lanes.get_mut(l) {
                 lane.outcome = Ok(Some(answer));
             }

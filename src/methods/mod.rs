@@ -350,7 +350,7 @@ impl<T: Real, M: Model<T>> Paper<'_, '_, T, M> {
             lowest_pressure: lowest.1,
             highest_pressure: highest,
         };
-        (compared, Answer { report, state: 0, left: self.node, meeting: None, rigid: false })
+        (compared, Answer { report, state: 0, left: self.node, meeting: None, size: T::zero(), rigid: false })
     }
 
     /// The lowest pressure at any Gauss point and its element, and the highest; neither beyond zero where there is

@@ -26,13 +26,15 @@
 //! first step on the finest mesh is one already ([`Level::advance`]).
 //!
 //! *Only what changed.* Both ends are condensed towards a meeting point among the elements whose matrices
-//! changed; the parts outside them stay as they are. Convergence is decided on all elements.
+//! changed; the parts outside them stay as they are. Convergence is decided on all elements. Within a step the contact's
+//! edges are iterated by themselves first ([`Level::settle_edges`]).
 //!
 //! *Descent.* Without the potential's action on bending the state is the minimum of a convex energy. Where full
 //! steps do not halve the residual, increments are cut to where the energy is least along them
 //! ([`Level::lower`]): this converges from anywhere.
 
 mod coupled;
+mod local;
 pub(crate) mod nested;
 mod settings;
 
@@ -51,6 +53,7 @@ use crate::storage::{Node, Place, State, Work};
 use crate::sweep::pair::Bending;
 use crate::sweep::{Block, Condensed, End, Factor, Stamp};
 use core::ops::Range;
+use local::Edges;
 
 /// Differences between moments by deformation and by equilibrium, and what to compare them with.
 #[derive(Clone, Copy, Debug)]
@@ -188,6 +191,9 @@ pub(crate) struct Level<'a, 'b, T: Real, M: Model<T>> {
     located: bool,
     /// Elements whose law the continuation in the stiffness scales.
     scaled: Range<usize>,
+    /// The largest moment after the last step \[N m\]; zero before there was one.
+    size: T,
+    edges: Edges,
 }
 
 /// What a sweep solves for.
@@ -230,7 +236,8 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         let meeting = (places.len() / 2).max(1);
         let scaled = 0..places.len();
         let (node, fresh, located) = (Node::default(), false, false);
-        Self { context, places, node, current: 0, best: None, meeting, fresh, located, scaled }
+        let (size, edges) = (T::zero(), Edges::default());
+        Self { context, places, node, current: 0, best: None, meeting, fresh, located, scaled, size, edges }
     }
 
     /// Is bending in a loop with the potential?
@@ -333,27 +340,30 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         let (mut least, mut lowest) = (T::infinity(), T::infinity());
         let (mut rounds_since_best, mut stuck) = (0, 0);
         let (mut slow, mut last) = (0, T::infinity());
-        let mut short: Option<T> = None;
+        let (mut short, mut vain): (Option<T>, bool) = (None, false);
         // What rounding may leave of a step.
         let blur = T::of(64.0) * T::epsilon() * T::from(self.places.len()).unwrap_or(T::one());
         for _ in 0..=most {
             let mut residual = Residual::none();
             if !changed.is_empty() {
-                let stepped = self.step(&changed, scale, count);
+                let stepped = self.step(&changed, scale, goal, count);
                 // There is a way back where a state was good before.
                 residual = if self.best.is_some() { self.tried(stepped)? } else { stepped? };
                 if !residual.is_finite() && self.best.is_some_and(|(best, _)| best == self.current) {
                     // The state that seemed best cannot be gone on from: the one before it could.
                     self.best = Some((1 - self.current, residual));
                 }
-                // Without an edge of contact the equations are all but linear.
+                // Without an edge of contact that moves the equations are all but linear.
+                let linear = self.edges.rest || short.is_none() && !self.has_edges(&changed);
                 short = Some(match short {
-                    None => T::of(if self.edges(&changed) { SHORT } else { LINEAR }),
+                    _ if linear && !vain => T::of(LINEAR),
+                    None => T::of(SHORT),
                     Some(before) => before.min(T::of(QUADRATIC)),
                 });
             }
             let moved = residual.relative();
-            if !goal.finest && moved <= stop {
+            // A start is good enough where the edges are at rest and the rest has followed.
+            if !goal.finest && moved <= if self.edges.rest { T::one() } else { stop } {
                 return Ok(Outcome::Converged);
             }
             let done = moved <= stop.max(blur);
@@ -368,7 +378,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 let balanced = self.tried(balanced)?;
                 checked = balanced.relative() <= stop;
                 // Not twice in vain: the steps have to grow far shorter before it is asked again.
-                short = Some(T::of(1e-3) * moved);
+                (short, vain) = (Some(T::of(1e-3) * moved), true);
                 if checked {
                     residual = balanced;
                 }
@@ -417,18 +427,29 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     }
 
     /// Had one of the elements an edge of contact in it when they were swept?
-    fn edges(&self, swept: &Range<usize>) -> bool {
+    fn has_edges(&self, swept: &Range<usize>) -> bool {
         let edge = |place: &Place<T, M>| place.work.swept == Touch::Edge;
         self.places.get(swept.clone()).is_some_and(|places| places.iter().any(edge))
     }
 
-    /// One full step, where the elements `changed` have changed. By how much it moved the beam: the change of the
-    /// moments. The best state is the one after the shortest step.
-    fn step(&mut self, changed: &Range<usize>, scale: T, count: &mut Count) -> Result<Residual<T>, Halt> {
+    /// One full step, where the elements `changed` have changed; after the edges of the contact by themselves, where these
+    /// may be far from their places. By how much it moved the beam: the change of the moments. The best state is the one
+    /// after the shortest step.
+    fn step(
+        &mut self,
+        changed: &Range<usize>,
+        scale: T,
+        goal: Goal<T>,
+        count: &mut Count,
+    ) -> Result<Residual<T>, Halt> {
         let swept = self.extent(changed);
         count.spend(swept.len())?;
         self.condense(swept, scale, Solve::State)?;
+        if M::Law::LINEAR {
+            self.settle_edges(scale, goal, count)?;
+        }
         let residual = self.substitute(false).ok_or(Halt::Breakdown(self.meeting - 1))?;
+        self.size = residual.size;
         if self.best.is_none_or(|(_, best)| residual.relative() < best.relative()) {
             self.best = Some((self.current, residual));
         }
@@ -754,17 +775,29 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         -T::Vec2::of(w.value(), theta.value())
     }
 
-    /// From a state that is all but the solution: one step for an increment. A sweep for the whole state would leave
-    /// rounding in it that grows with the number of elements.
+    /// From a state that is all but the solution: steps for increments, as long as each leaves a hundredth. A sweep for the
+    /// whole state would leave rounding in it that grows with the number of elements.
     pub(crate) fn advance(&mut self, stop: T, count: &mut Count) -> Result<Outcome, Halt> {
         count.spend(self.places.len())?;
-        let open = self.join_nodes();
+        let mut open = self.join_nodes();
         self.renew();
-        let residual = self.balance(T::one())?;
-        self.best = Some((self.current, residual));
-        let residual = self.increment(open, T::one(), count)?;
-        self.best = Some((self.current, residual));
-        Ok(if residual.relative() <= stop { Outcome::Converged } else { Outcome::Stalled })
+        let mut before = self.balance(T::one())?;
+        loop {
+            self.best = Some((self.current, before));
+            let residual = self.increment(open, T::one(), count)?;
+            if residual.relative() < before.relative() {
+                self.best = Some((self.current, residual));
+            }
+            if residual.relative() <= stop {
+                return Ok(Outcome::Converged);
+            }
+            if residual.relative() > T::of(LOST) * before.relative() {
+                self.keep_best();
+                return Ok(Outcome::Stalled);
+            }
+            // The last step closed what was open.
+            (before, open) = (residual, T::Vec2::default());
+        }
     }
 
     /// Are there so many elements that the rounding of sweeps shows before that of the contact, whose layers they
@@ -976,6 +1009,23 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     /// changes the elements' moments, which is what the one before was off by. `None` if the parts cannot be joined.
     #[inline(never)]
     fn substitute(&mut self, step: bool) -> Option<Residual<T>> {
+        let target = self.target();
+        let moved = self.substitute_on(0..self.places.len(), target, step)?;
+        (self.current, self.located) = (target, false);
+        Some(moved)
+    }
+
+    /// Where the next state goes: the best one stays where it is, and the one before a step until something is better.
+    fn target(&self) -> usize {
+        match self.best {
+            Some((best, _)) if best != self.current => self.current,
+            _ => 1 - self.current,
+        }
+    }
+
+    /// The same on the elements `range` about the meeting point, into the state number `target`.
+    #[inline(always)]
+    fn substitute_on(&mut self, range: Range<usize>, target: usize, step: bool) -> Option<Residual<T>> {
         let current = self.current;
         let meeting = self.meeting;
         let (west, east) = self.places.split_at_mut_checked(meeting)?;
@@ -995,11 +1045,8 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             }
             None => self.context.right.close(&met)?,
         };
-        // The best state stays where it is, and the one before a step until something is better.
-        let target = match self.best {
-            Some((best, _)) if best != current => current,
-            _ => 1 - current,
-        };
+        let west = west.get_mut(range.start.min(meeting)..)?;
+        let east = east.get_mut(..range.end.max(meeting) - meeting)?;
         let mut near = d;
         let (mut size, mut mismatch, mut sum) = (T::zero(), T::zero(), T::zero());
         let mut see = |element: &Element<T, M>, before: State<T>, after: State<T>| {
@@ -1027,7 +1074,6 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             see(element, before, work.states[target]);
             near = far;
         }
-        (self.current, self.located) = (target, false);
         let size = size.max(self.context.quiet);
         Some(Residual { mismatch, size, sum, ..Residual::none() })
     }
@@ -1042,25 +1088,41 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 || touch != swept
                 || (rescaled && touch != Touch::Free)
         };
-        let Some(first) = self.places.iter().position(changes) else { return 0..0 };
-        first..self.places.iter().rposition(changes).unwrap_or(first) + 1
+        self.span(0..self.places.len(), changes).unwrap_or(0..0)
+    }
+
+    /// From the first to the last element of `range` of which `holds` is true.
+    fn span(&self, range: Range<usize>, holds: impl Fn(&Place<T, M>) -> bool) -> Option<Range<usize>> {
+        let (start, places) = (range.start, self.places.get(range)?);
+        let first = places.iter().position(&holds)?;
+        let last = places.iter().rposition(holds).unwrap_or(first);
+        Some(start + first..start + last + 1)
     }
 
     /// Finds how each element touches.
     pub(super) fn locate(&mut self) {
-        if self.located || !Touch::possible::<T, M>() {
+        if !self.located {
+            self.locate_on(0..self.places.len());
+            self.located = true;
+        }
+    }
+
+    /// The same on the elements `range`.
+    #[inline(always)]
+    fn locate_on(&mut self, range: Range<usize>) {
+        if !Touch::possible::<T, M>() {
             return;
         }
         let Context { model, ref onto, .. } = *self.context;
-        let mut node = self.node;
-        for Place { element, work } in self.places.iter_mut() {
+        let Some((before, places)) = self.places.split_at_mut_checked(range.start) else { return };
+        let mut node = before.last().map_or(self.node, |place| place.work.node);
+        for Place { element, work } in places.iter_mut().take(range.len()) {
             let State { e, d } = work.states[self.current];
             let q = onto.as_ref().map(|ratio| || electric::potential(element, &node, &work.node, ratio));
             let eta = Motion::new(element.h, e, d).cubic();
             work.set_touch(Touch::of(model, element, &eta, q));
             node = work.node;
         }
-        self.located = true;
     }
 }
 

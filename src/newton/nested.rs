@@ -164,6 +164,8 @@ pub(crate) struct Answer<T: Real, M: Model<T>> {
     pub(crate) left: Node<T, M>,
     /// Where the condensed parts meet, if they are those of the state.
     pub(crate) meeting: Option<usize>,
+    /// The largest moment \[N m\].
+    pub(crate) size: T,
     /// The foundation was taken as one that is rigid to the elements.
     pub(crate) rigid: bool,
 }
@@ -316,7 +318,8 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
             elements: self.places.len(),
         };
         let meeting = self.fresh.then_some(self.meeting);
-        Answer { report, state: self.current, left: self.node, meeting, rigid: false }
+        let size = self.best.map_or(T::zero(), |(_, r)| r.size);
+        Answer { report, state: self.current, left: self.node, meeting, size, rigid: false }
     }
 }
 
@@ -394,7 +397,7 @@ fn descend<T: Real, M: Model<T>>(
     let elements = levels.first().map_or(0, |&(_, len)| len);
     let context = context(model, places.get(..elements).unwrap_or_default(), settings.stop);
     let mut outcome = Ok(Outcome::Stalled);
-    let mut state = 0;
+    let (mut state, mut size) = (0, T::zero());
     for (rank, &(start, len)) in levels.iter().enumerate().rev() {
         let coarsest = rank + 1 == levels.len();
         let Some((head, tail)) = places.split_at_mut_checked(start + len) else { break };
@@ -407,6 +410,7 @@ fn descend<T: Real, M: Model<T>>(
             prolong(mesh, tail.get(..coarse_len).unwrap_or_default(), state);
         }
         let mut level = Level::new(&context, mesh);
+        level.size = size;
         if M::Mu1::PRESENT && context.onto.is_some() && !context.into {
             level.electric();
         }
@@ -422,7 +426,7 @@ fn descend<T: Real, M: Model<T>>(
         if rank == 0 {
             return Ok(level.answer(outcome, settings.stop, count));
         }
-        state = level.current;
+        (state, size) = (level.current, level.size);
     }
     Err(Error::Capacity { needed: 1, available: 0 })
 }
@@ -485,6 +489,7 @@ pub(crate) struct Last<T: Real, M: Model<T>> {
     state: usize,
     left: Node<T, M>,
     meeting: Option<usize>,
+    size: T,
     /// Values at the clamps, and the truncations.
     ends: [T::Vec2; 2],
     bounds: [T; 2],
@@ -496,6 +501,7 @@ impl<T: Real, M: Model<T>> Last<T, M> {
             state: answer.state,
             left: answer.left,
             meeting: answer.meeting,
+            size: answer.size,
             ends: ends(model, places).map(|end| end.value),
             bounds: bounds(model),
         }
@@ -524,7 +530,7 @@ pub(crate) fn follow<T: Real, M: Model<T>>(
     }
     let mut count = budget(settings, elements);
     let mut level = Level::new(&context, places);
-    (level.current, level.node) = (last.state, last.left);
+    (level.current, level.node, level.size) = (last.state, last.left, last.size);
     if let Some(meeting) = last.meeting {
         (level.meeting, level.fresh) = (meeting, true);
     }
@@ -573,7 +579,7 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
         level.current = self.current;
         level.cold(Goal::start(), count)?;
         (self.current, self.meeting, self.fresh) = (level.current, level.meeting, level.fresh);
-        self.located = false;
+        (self.located, self.size) = (false, level.size);
         let most = if goal.finest { 4 * STAGE } else { STAGE };
         let outcome = self.iterate(T::one(), goal, most, count)?;
         if outcome == Outcome::Stalled && self.convex() {
@@ -697,6 +703,7 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
         let mut stride = T::of(STRIDE);
         let mut reached = T::zero();
         while scale < T::one() {
+            let before = count.iterations;
             if self.iterate(scale, Goal::start(), stage, count)? == Outcome::Stalled {
                 // Too far: half the way in the exponent, from where the failed stage ended.
                 if stride <= T::of(SHORTEST) || reached == T::zero() {
@@ -705,7 +712,8 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
                 stride = stride.sqrt();
             } else {
                 reached = scale;
-                stride = (stride * stride).min(T::of(STRIDE));
+                let quick = count.iterations <= before + 1;
+                stride = if quick { stride * stride } else { (stride * stride).min(T::of(STRIDE)) };
             }
             scale = reached * stride;
         }

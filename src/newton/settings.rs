@@ -158,7 +158,7 @@ pub struct Report<T> {
     pub residual: T,
     /// The residual that rounding alone may leave in this scene.
     pub floor: T,
-    /// Linear solves on all meshes together.
+    /// Newton steps on all meshes together. What was iterated around the contact's edges alone is in the visits.
     pub iterations: usize,
     /// Elements whose matrices were evaluated or re-factored, summed over all meshes and iterations.
     pub element_visits: usize,

@@ -1,0 +1,143 @@
+//! The contact's edges by themselves, before the rest of the beam: nonlinear elimination.
+//!
+//! Under a stiff foundation an edge of the contact moves by one of its boundary layers a step, and for each step all
+//! between the outermost edges is condensed again and all of the beam substituted. But how the rest answers to an edge
+//! is linear as long as its own contact is as it was, and known: the condensed parts on both sides have it. So once
+//! a full step is condensed, the meeting point goes from edge to edge, and the few elements around each are iterated
+//! alone until they are at rest, with the other edges as they were linearised. The full step that follows takes the
+//! rest along. It alone is judged: what happened in between is no more than a better point to linearise at.
+//!
+//! Under a curved law all that touches changes with each step, and there is nothing to gain. (Measured: twice the visits.)
+
+use super::{Count, Goal, Halt, Level, Solve, larger};
+use crate::element::contact::Touch;
+use crate::real::Real;
+use crate::scene::Model;
+use crate::storage::{Place, Work};
+use arrayvec::ArrayVec;
+use core::ops::Range;
+
+/// Elements on both sides of an edge that are iterated with it.
+const MARGIN: usize = 2;
+/// Groups of neighbouring edges at most.
+const GROUPS: usize = 8;
+/// Steps for one group.
+const STEPS: usize = 12;
+/// Change of moments that is rest enough on a coarser mesh.
+const REST: f64 = 1e-6;
+/// How often edges may not come to rest before they are no longer iterated alone.
+const PATIENCE: usize = 3;
+
+/// What became of the edges.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Edges {
+    /// They were at rest before the last full step.
+    pub(super) rest: bool,
+    /// How often they were not.
+    restless: usize,
+}
+
+impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
+    /// After all was condensed at the current state: condenses anew around the contact's edges, at states in which these
+    /// are at rest. The states are where the next one goes.
+    ///
+    /// No edge is iterated in a first step, from nothing, nor where there are many.
+    pub(super) fn settle_edges(&mut self, scale: T, goal: Goal<T>, count: &mut Count) -> Result<(), Halt> {
+        self.edges.rest = false;
+        if self.size == T::zero() || self.edges.restless > PATIENCE {
+            return Ok(());
+        }
+        let mut groups = self.groups();
+        if groups.is_empty() {
+            return Ok(());
+        }
+        if self.meeting > self.places.len() / 2 {
+            groups.reverse();
+        }
+        let (current, target) = (self.current, self.target());
+        for Place { work, .. } in self.places.iter_mut() {
+            work.states[target] = work.states[current];
+        }
+        let rest = if goal.finest { goal.stop } else { T::of(REST) };
+        let rest = rest.max(T::of(16.0) * T::epsilon());
+        self.current = target;
+        let settled = groups.into_iter().try_fold(true, |all, group| {
+            let settled = self.settle_group(group, scale, rest, count)?;
+            Ok(all && settled)
+        });
+        // Around the edges it is known how the elements touch there, not here.
+        (self.current, self.located) = (current, false);
+        match settled {
+            Ok(settled) => {
+                self.edges.rest = settled;
+                self.edges.restless += usize::from(!settled);
+                Ok(())
+            }
+            Err(Halt::Budget) => Err(Halt::Budget),
+            Err(_) => {
+                // Where that broke down the full step need not.
+                self.edges.restless = usize::MAX;
+                count.spend(self.places.len())?;
+                self.condense(0..self.places.len(), scale, Solve::State)
+            }
+        }
+    }
+
+    /// Iterates the elements of `group`, and those that come to touch beside it, in the current state; are they at rest?
+    fn settle_group(
+        &mut self,
+        mut group: Range<usize>,
+        scale: T,
+        rest: T,
+        count: &mut Count,
+    ) -> Result<bool, Halt> {
+        let mut changed = group.clone();
+        for step in 0..STEPS {
+            // All is condensed, but perhaps not towards here.
+            if step > 0 || !group.contains(&self.meeting) {
+                let swept = self.extent(&changed);
+                count.spend(swept.len())?;
+                self.condense(swept, scale, Solve::State)?;
+            }
+            let moved = self.substitute_on(group.clone(), self.current, false);
+            let moved = moved.filter(|moved| moved.is_finite()).ok_or(Halt::Breakdown(self.meeting - 1))?;
+            self.locate_on(group.clone());
+            if moved.mismatch <= rest * larger(self.size, moved.size) {
+                return Ok(true);
+            }
+            match self.span(group, |Place { work, .. }| is_edge(work) || work.touch() != work.swept) {
+                Some(range) => changed = range,
+                None => return Ok(true),
+            }
+            group = self.around(&changed);
+        }
+        Ok(false)
+    }
+
+    /// The elements `range` and some on both sides.
+    fn around(&self, range: &Range<usize>) -> Range<usize> {
+        range.start.saturating_sub(MARGIN)..(range.end + MARGIN).min(self.places.len())
+    }
+
+    /// The groups of neighbouring edges; none if they are half of the beam.
+    fn groups(&self) -> ArrayVec<Range<usize>, GROUPS> {
+        let mut groups = ArrayVec::<Range<usize>, GROUPS>::new();
+        let edges = self.places.iter().enumerate().filter(|(_, place)| is_edge(&place.work));
+        for around in edges.map(|(i, _)| self.around(&(i..i + 1))) {
+            if let Some(last) = groups.last_mut()
+                && last.end >= around.start
+            {
+                last.end = around.end;
+            } else if groups.try_push(around).is_err() {
+                return ArrayVec::new();
+            }
+        }
+        let elements: usize = groups.iter().map(ExactSizeIterator::len).sum();
+        if 2 * elements > self.places.len() { ArrayVec::new() } else { groups }
+    }
+}
+
+/// Is the contact's edge in the element?
+fn is_edge<T: Real, M: Model<T>>(work: &Work<T, M>) -> bool {
+    work.touch() == Touch::Edge
+}
