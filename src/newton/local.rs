@@ -47,13 +47,13 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
         if self.size == T::zero() || self.edges.restless > PATIENCE {
             return Ok(());
         }
-        let mut groups = self.groups();
+        let groups = self.groups();
         if groups.is_empty() {
             return Ok(());
         }
-        if self.meeting > self.places.len() / 2 {
-            groups.reverse();
-        }
+        let last = groups.len() - 1;
+        let backwards = self.meeting > self.places.len() / 2;
+        let order = (0..=last).filter_map(|i| groups.get(if backwards { last - i } else { i }));
         let (current, target) = (self.current, self.target());
         for Place { work, .. } in self.places.iter_mut() {
             work.states[target] = work.states[current];
@@ -61,7 +61,7 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
         let rest = if goal.finest { goal.stop } else { T::of(REST) };
         let rest = rest.max(T::of(16.0) * T::epsilon());
         self.current = target;
-        let settled = groups.into_iter().try_fold(true, |all, group| {
+        let settled = order.cloned().try_fold(true, |all, group| {
             let settled = self.settle_group(group, scale, rest, count)?;
             Ok(all && settled)
         });
