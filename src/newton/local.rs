@@ -11,6 +11,7 @@
 
 use super::{Count, Goal, Halt, Level, Solve, larger};
 use crate::element::contact::Touch;
+use crate::law::Compliance;
 use crate::real::Real;
 use crate::scene::Model;
 use crate::storage::{Place, Work};
@@ -28,6 +29,9 @@ const REST: f64 = 1e-6;
 /// How often edges may not come to rest before they are no longer iterated alone.
 const PATIENCE: usize = 3;
 
+/// Elements around edges.
+pub(super) type Groups = ArrayVec<Range<usize>, GROUPS>;
+
 /// What became of the edges.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Edges {
@@ -38,22 +42,37 @@ pub(super) struct Edges {
 }
 
 impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
-    /// After all was condensed at the current state: condenses anew around the contact's edges, at states in which these
-    /// are at rest. The states are where the next one goes.
-    ///
-    /// No edge is iterated in a first step, from nothing, nor where there are many.
-    pub(super) fn settle_edges(&mut self, scale: T, goal: Goal<T>, count: &mut Count) -> Result<(), Halt> {
-        self.edges.rest = false;
-        if self.size == T::zero() || self.edges.restless > PATIENCE {
-            return Ok(());
+    /// The groups of the contact's edges that are to be iterated alone, that nearer to the meeting point first; none in a
+    /// first step, from nothing, nor where that was in vain before.
+    pub(super) fn restless_edges(&self) -> Groups {
+        if !M::Law::LINEAR || self.size == T::zero() || self.edges.restless > PATIENCE {
+            return Groups::new();
         }
-        let groups = self.groups();
+        let mut groups = self.groups();
+        let from = |group: Option<&Range<usize>>| group.map_or(0, |group| group.start.abs_diff(self.meeting));
+        if from(groups.first()) <= from(groups.last()) {
+            return groups;
+        }
+        let mut reversed = Groups::new();
+        while let Some(last) = groups.pop() {
+            let _ = reversed.try_push(last);
+        }
+        reversed
+    }
+
+    /// After all was condensed at the current state: condenses anew around the contact's edges `groups`, at states in which
+    /// these are at rest. The states are where the next one goes.
+    pub(super) fn settle_edges(
+        &mut self,
+        groups: Groups,
+        scale: T,
+        goal: Goal<T>,
+        count: &mut Count,
+    ) -> Result<(), Halt> {
+        self.edges.rest = false;
         if groups.is_empty() {
             return Ok(());
         }
-        let last = groups.len() - 1;
-        let backwards = self.meeting > self.places.len() / 2;
-        let order = (0..=last).filter_map(|i| groups.get(if backwards { last - i } else { i }));
         let (current, target) = (self.current, self.target());
         for Place { work, .. } in self.places.iter_mut() {
             work.states[target] = work.states[current];
@@ -61,7 +80,7 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
         let rest = if goal.finest { goal.stop } else { T::of(REST) };
         let rest = rest.max(T::of(16.0) * T::epsilon());
         self.current = target;
-        let settled = order.cloned().try_fold(true, |all, group| {
+        let settled = groups.into_iter().try_fold(true, |all, group| {
             let settled = self.settle_group(group, scale, rest, count)?;
             Ok(all && settled)
         });
@@ -95,7 +114,7 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
         for step in 0..STEPS {
             // All is condensed, but perhaps not towards here.
             if step > 0 || !group.contains(&self.meeting) {
-                let swept = self.extent(&changed);
+                let swept = self.extent(&changed, self.meeting);
                 count.spend(swept.len())?;
                 self.condense(swept, scale, Solve::State)?;
             }
@@ -120,8 +139,8 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
     }
 
     /// The groups of neighbouring edges; none if they are half of the beam.
-    fn groups(&self) -> ArrayVec<Range<usize>, GROUPS> {
-        let mut groups = ArrayVec::<Range<usize>, GROUPS>::new();
+    fn groups(&self) -> Groups {
+        let mut groups = Groups::new();
         let edges = self.places.iter().enumerate().filter(|(_, place)| is_edge(&place.work));
         for around in edges.map(|(i, _)| self.around(&(i..i + 1))) {
             if let Some(last) = groups.last_mut()
@@ -129,11 +148,11 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
             {
                 last.end = around.end;
             } else if groups.try_push(around).is_err() {
-                return ArrayVec::new();
+                return Groups::new();
             }
         }
         let elements: usize = groups.iter().map(ExactSizeIterator::len).sum();
-        if 2 * elements > self.places.len() { ArrayVec::new() } else { groups }
+        if 2 * elements > self.places.len() { Groups::new() } else { groups }
     }
 }
 

@@ -442,12 +442,13 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         goal: Goal<T>,
         count: &mut Count,
     ) -> Result<Residual<T>, Halt> {
-        let swept = self.extent(changed);
+        self.locate();
+        let groups = self.restless_edges();
+        let toward = groups.first().map_or(self.meeting, |group| group.start + group.len() / 2);
+        let swept = self.extent(changed, toward);
         count.spend(swept.len())?;
         self.condense(swept, scale, Solve::State)?;
-        if M::Law::LINEAR {
-            self.settle_edges(scale, goal, count)?;
-        }
+        self.settle_edges(groups, scale, goal, count)?;
         let residual = self.substitute(false).ok_or(Halt::Breakdown(self.meeting - 1))?;
         self.size = residual.size;
         if self.best.is_none_or(|(_, best)| residual.relative() < best.relative()) {
@@ -857,12 +858,12 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     }
 
     /// The elements that have to be condensed anew where those of `changed` changed; moves the meeting
-    /// point among these.
-    fn extent(&mut self, changed: &Range<usize>) -> Range<usize> {
+    /// point among these, as far `toward` one as it can.
+    fn extent(&mut self, changed: &Range<usize>, toward: usize) -> Range<usize> {
         let swept = changed.start.min(self.meeting)..changed.end.max(self.meeting);
         let most = (self.places.len() - 1).max(1);
         // `clamp` would check that its bounds are in order, and panic.
-        self.meeting = self.meeting.max(changed.start).min(changed.end).max(1).min(most);
+        self.meeting = toward.max(changed.start).min(changed.end).max(1).min(most);
         swept
     }
 
