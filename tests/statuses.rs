@@ -251,6 +251,14 @@ fn an_overflow_is_never_converged() {
         let solution = problem.solve(&mut memory, &Settings::default()).expect("settings in range");
         assert_ne!(solution.report().status, Status::Converged, "xi = {}", solution.at(0.5).bending);
     }
+    // A prescribed potential at the end of the numbers: between the nodes it is beyond it.
+    for (left, right) in [(f64::MAX, 0.0), (0.0, f64::MAX)] {
+        let scene = beam(5000.0, 1e11, 1e-14, 1e-16)
+            .load(Load { transverse: 1e6, axial: 1.0, points: () })
+            .potential(Potential { left, right });
+        let report = ends(scene, Mesh::uniform(1), Settings::default());
+        assert_ne!(report.status, Status::Converged, "{left:e}, {right:e}");
+    }
 }
 
 #[test]
