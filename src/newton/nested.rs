@@ -238,7 +238,7 @@ pub(crate) fn beyond<T: Real, M: Model<T>>(
     places.iter().position(beyond)
 }
 
-/// What the moments' balance does not tell: rounding of the potential, of loads below the normal numbers, and of contact
+/// What the moments' balance does not tell: rounding of the potential, of fluxes and loads below the normal numbers, and of contact
 /// forces that outweigh all moments; an end of the beam that is not where it is clamped. Relative as the residual is; of
 /// less than `stop` it may be zero.
 pub(crate) fn unseen<T: Real, M: Model<T>>(
@@ -250,8 +250,8 @@ pub(crate) fn unseen<T: Real, M: Model<T>>(
     stop: T,
 ) -> T {
     let floor = if residual.floor() > T::of(BLIND) { residual.floor() } else { T::zero() };
-    let rounding =
-        electric::rounding(places, left, stop).max(residual.underflow(places.len(), model.length()));
+    let fluxes = electric::rounding(places, left, stop).max(electric::faint(places, left, model.length()));
+    let rounding = fluxes.max(residual.underflow(places.len(), model.length()));
     floor.max(rounding).max(loose(model, places, state))
 }
 
