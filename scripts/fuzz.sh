@@ -20,8 +20,8 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 case $limit in
-    runs) [ $# -gt 0 ] || set -- differential=5e5 scene=4e6 recursion=1.6e7 roots=4e7 scene_file=4e7 ;;
-    *) [ $# -gt 0 ] || set -- differential scene recursion roots scene_file ;;
+    runs) [ $# -gt 0 ] || set -- differential=5e5 scene=4e6 units=4e6 recursion=1.6e7 roots=4e7 scene_file=4e7 ;;
+    *) [ $# -gt 0 ] || set -- differential scene units recursion roots scene_file ;;
 esac
 
 # Comparisons of numbers and counts of loops lead nowhere here; to keep them is half the time.

@@ -226,6 +226,51 @@ pub(crate) fn rounding<T: Real, M: Model<T>>(places: &[Place<T, M>], left: &Node
     if parts == T::zero() { parts } else { T::epsilon() * parts / most }
 }
 
+/// What is lost below the normal numbers, where rounding is no part of a number's size: of u and q at nodes, each over its
+/// largest value, of the fluxes by what u and q miss at the end of the beam, and of the flexibilities between nodes.
+/// Zero where by the first element's coefficients it is nothing to speak of.
+pub(crate) fn faint<T: Real, M: Model<T>>(places: &[Place<T, M>], left: &Node<T, M>, length: T) -> T {
+    let Some(first) = places.first().filter(|_| present::<T, M>()) else { return T::zero() };
+    let ratio = Ratio::of(&first.element);
+    let elements = T::from(places.len()).unwrap_or(T::one());
+    let unit = T::of(4.0) * elements * T::min_positive_value() * T::epsilon();
+    // A current per length acts on the length.
+    let flux = unit * (T::one() + length);
+    // What units of both fluxes and of the gradients make of u' and q'.
+    let made = |k: &Inverse<T>| {
+        let of_u = k.uu + ratio.excess(k).abs();
+        [unit + flux * of_u, unit + flux * (k.qq + (ratio.r * k.uq).abs() + k.uq.abs())]
+    };
+    let over = |part: T, whole: T| if whole == T::zero() { T::zero() } else { part / whole };
+    let (k, least) = (first.element.flexibility.mean(), T::min_positive_value());
+    let ([of_u, of_q], fluxes) = (made(&k), unit * (left.tau.get().abs() + left.charge.get().abs()));
+    if (of_u + of_q) * length + fluxes <= least
+        && over(unit, k.uu * length) + over(unit, k.qq * length) <= least / T::epsilon()
+    {
+        return T::zero();
+    }
+    let zero = [T::zero(); 2];
+    let (mut lost, mut reach, mut most, mut fluxes) = (zero, zero, zero, zero);
+    let mut see = |node: &Node<T, M>| {
+        most = [most[0].max(node.u.get().abs()), most[1].max(node.q.get().abs())];
+        fluxes = [fluxes[0].max(node.tau.get().abs()), fluxes[1].max(node.charge.get().abs())];
+    };
+    see(left);
+    for Place { element, work } in places {
+        let (h, k) = (element.h, element.flexibility.mean());
+        let [of_u, of_q] = made(&k);
+        lost = [lost[0] + h * of_u, lost[1] + h * of_q];
+        reach = [reach[0] + h * k.uu, reach[1] + h * k.qq];
+        see(&work.node);
+    }
+    let all = unit * (fluxes[0] + fluxes[1]);
+    let of = |i: usize| {
+        let missed = over(unit, reach[i]);
+        over(lost[i] + all, most[i]).max(over(missed + flux, fluxes[i])).max(missed)
+    };
+    of(0).max(of(1))
+}
+
 fn motion<T: Real, M: Model<T>>(element: &Element<T, M>, state: crate::storage::State<T>) -> Motion<T> {
     Motion::new(element.h, state.e, state.d)
 }

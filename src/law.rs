@@ -177,8 +177,9 @@ impl<T: Real, K: Profile<T>> Compliance<T> for Power<T, K> {
     }
     #[inline]
     fn pressure(&self, k: T, _: T, r: T) -> (T, T) {
-        let slope = power(r, self.exponent - T::one());
-        (k * (slope * r), k * (self.exponent * slope))
+        // Not k r^a: a power may be below the number format where the pressure is not.
+        let secant = k * power(r, self.exponent - T::one());
+        (secant * r, self.exponent * secant)
     }
     fn is_lipschitz(&self) -> bool {
         self.exponent == T::one()
@@ -210,8 +211,9 @@ impl<T: Real> Compliance<T> for Tabulated<'_, T> {
         let upper = self.penetration.partition_point(|&x| x <= r).clamp(1, last);
         match (self.penetration.get(upper - 1..=upper), self.pressure.get(upper - 1..=upper)) {
             (Some(&[r0, r1]), Some(&[p0, p1])) => {
-                let slope = (p1 - p0) / (r1 - r0);
-                (p0 + (r - r0) * slope, slope)
+                // A slope may be below the number format where the pressure is not.
+                let (run, rise) = (r1 - r0, p1 - p0);
+                (p0 + (r - r0) / run * rise, rise / run)
             }
             _ => (T::nan(), T::nan()),
         }
@@ -321,6 +323,19 @@ mod tests {
             let slope = (pressure(r + step).0 - pressure(r - step).0) / (2.0 * step);
             prop_assert!((pressure(r).1 - slope).abs() <= 1e-8 * slope);
             prop_assert!((pressure(r).0 - k * r.powf(a)).abs() <= 1e-13 * k * r.powf(a));
+        }
+
+        #[test]
+        fn pressures_are_numbers_where_powers_and_slopes_are_below_them(r in 1e-112..1e-108_f64, far in 0.0..1.0_f64) {
+            let law = Power { stiffness: 1e300, exponent: 3.0 };
+            let scaled = 1e110 * r;
+            let want = 1e-30 * scaled * scaled * scaled;
+            let (p, slope) = law.pressure(1e300, 0.0, r);
+            prop_assert!((p - want).abs() <= 1e-14 * want, "{p:e} {want:e}");
+            prop_assert!((slope * r - 3.0 * want).abs() <= 1e-13 * want);
+            let law = Tabulated { penetration: &[0.0, 1e200], pressure: &[0.0, 1e-200] };
+            let (p, _) = law.pressure(0.0, 0.0, far * 1e200);
+            prop_assert!((p - far * 1e-200).abs() <= 1e-15 * 1e-200);
         }
 
         #[test]

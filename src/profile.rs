@@ -415,10 +415,11 @@ impl<T: Real> Table<'_, T> {
         let upper = piece_of(self.x, mid).clamp(1, self.x.len().max(2) - 1);
         match (self.x.get(upper - 1..=upper), self.y.get(upper - 1..=upper)) {
             (Some(&[x0, x1]), Some(&[y0, y1])) => {
-                let slope = (y1 - y0) / (x1 - x0);
-                // From the nearer end, so that the table's own values come out exactly.
+                let (run, rise) = (x1 - x0, y1 - y0);
+                // From the nearer end, so that the table's own values come out exactly; by the share of the way, as a
+                // slope may be below the number format where the values are not.
                 let near = if x - x0 < x1 - x { (x0, y0) } else { (x1, y1) };
-                [near.1 + (x - near.0) * slope, slope]
+                [near.1 + (x - near.0) / run * rise, rise / run]
             }
             _ => [T::nan(); 2],
         }
@@ -558,6 +559,12 @@ mod tests {
         assert_eq!(table.jet(0.4, 0.2), [3.0, 5.0, 0.0]);
         assert_eq!(table.jet(0.4, 0.7), [3.0, -5.0, 0.0]);
         assert_eq!(table.breaks(), [0.4]);
+    }
+
+    #[test]
+    fn a_table_whose_slope_is_below_the_number_format_is_no_step() {
+        let table = Table { x: &[0.0, 1e122], y: &[0.0, 3e-304] };
+        assert_eq!((table.value(2.5e121, 1.0), table.value(7.5e121, 1.0)), (0.75e-304, 2.25e-304));
     }
 
     #[test]

@@ -451,7 +451,7 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
     pub(crate) fn statics(&self, t: T) -> (T, T) {
         let h = self.element.h;
         let shear = self.held.x() + h * self.between(t, T::one(), |y| self.net(y));
-        let lever = h * h * self.between(t, T::one(), |y| (y - t) * self.net(y));
+        let lever = h * (h * self.between(t, T::one(), |y| (y - t) * self.net(y)));
         let moment = self.held.x() * (h * (T::one() - t)) - self.held.y() + lever;
         (moment, shear)
     }
@@ -461,9 +461,10 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
     pub(crate) fn curvature(&self, t: T) -> (T, T) {
         let h = self.element.h;
         let stiffness = self.scene.beam().bending;
-        let kappa = |y: T| self.statics(y).0 / stiffness.value(self.element.x(y), self.mid);
-        let turn = h * integrate::<T, 4>(T::zero(), t, kappa);
-        let lift = h * h * integrate::<T, 4>(T::zero(), t, |y| (t - y) * kappa(y));
+        // Curvature times h: itself it may be below the normal numbers where slopes are not.
+        let turned = |y: T| self.statics(y).0 / (stiffness.value(self.element.x(y), self.mid) / h);
+        let turn = integrate::<T, 4>(T::zero(), t, turned);
+        let lift = h * integrate::<T, 4>(T::zero(), t, |y| (t - y) * turned(y));
         (turn, lift)
     }
 

@@ -39,6 +39,20 @@ impl<T: Real, M: Model<T>> Default for Node<T, M> {
     }
 }
 
+impl<T: Real, M: Model<T>> Node<T, M> {
+    /// The sum of the sizes of all fields.
+    fn size(&self, ratio: &Ratio<T>) -> T {
+        let (tau, charge) = (self.tau.get(), self.charge.get());
+        let sigma = ratio.sigma(tau, charge);
+        self.u.get().abs() + tau.abs() + self.q.get().abs() + charge.abs() + sigma.abs()
+    }
+
+    /// Are the fields well inside the number format?
+    pub(crate) fn is_finite(&self, ratio: &Ratio<T>) -> bool {
+        (self.size(ratio) * T::of(1e8)).is_finite()
+    }
+}
+
 /// An element's deformation: relative unknowns e and the right node's d, both of the penetration.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct State<T: Field> {
@@ -181,13 +195,10 @@ impl<T: Real, M: Model<T>> Place<T, M> {
     /// Are the fields of the element well inside the number format? Moments may balance where they are not.
     pub(crate) fn is_finite(&self, model: &M, state: usize, ratio: &Ratio<T>) -> bool {
         let State { e, d } = self.work.states[state];
-        let Node { u, tau, q, charge } = self.work.node;
-        let (tau, charge) = (tau.get(), charge.get());
         // Fields inside are integrals of the curvature, some slopes over the length.
         let (slope, h) = (self.element.deforming_force(e).y() / self.element.bending.yy, self.element.h);
         let bending = d.x().abs() + d.y().abs() + slope.abs() * (T::one() + h + T::one() / h);
-        let electric = u.get().abs() + tau.abs() + q.get().abs() + charge.abs();
-        let sum = bending + electric + ratio.sigma(tau, charge).abs() + self.gradients(model, e, ratio);
+        let sum = bending + self.work.node.size(ratio) + self.gradients(model, e, ratio);
         (sum * T::of(1e8)).is_finite() && (!Touch::possible::<T, M>() || self.has_finite_forces(e))
     }
 

@@ -180,6 +180,27 @@ fn laws_that_fail_in_a_coupled_scene_at_any_call() {
     assert!(ends.iter().any(|end| matches!(end, Ok(Status::LawNotFinite { .. }))));
 }
 
+/// A slope at the end of the numbers makes a pivot that is none, in the sweep at hand alone.
+#[test]
+fn factorisations_that_fail_at_any_call() {
+    let fuse = Fuse::default();
+    let law = Law(|_: f64, r: f64| (1e8 * r, fuse.or(f64::MAX, 1e8)));
+    let scene =
+        Scene::new(1.0, Beam::elastic(5000.0)).foundation(Foundation { law, gap: 1e-3 }).load(plain(1e6));
+    let ends = blow_at_every_call(&scene, &fuse, Mesh::uniform(6));
+    let broken = |end: &Result<Status, Error>| matches!(end, Ok(Status::Breakdown { .. }));
+    assert!(ends.iter().any(broken), "{ends:?}");
+    let law = Law(|_: f64, r: f64| (1e6 * r, fuse.or(f64::MAX, 1e6)));
+    let beam = Beam { bending: 50.0, axial: 1e5, piezo: 100.0, permittivity: 1.0 };
+    let scene = Scene::new(1.0, beam)
+        .foundation(Foundation { law, gap: 0.0 })
+        .conduction(Conduction::new(1e5, 10.0, 1.0))
+        .load(Load { transverse: 1e4, axial: 1e4, points: () })
+        .potential(Potential { left: -1.0, right: 1.0 });
+    let ends = blow_at_every_call(&scene, &fuse, Mesh::uniform(5));
+    assert!(ends.iter().any(broken), "{ends:?}");
+}
+
 #[test]
 fn a_prepared_scene_and_a_history_forget_a_fault() {
     let fuse = Fuse::default();

@@ -243,6 +243,52 @@ fn a_stiffness_that_no_element_can_hold_is_refused() {
 }
 
 #[test]
+fn elements_whose_length_has_no_cube_are_refused() {
+    // All else is in the middle of the numbers: it is the beam of length 1 in units of 1e-105 m.
+    let scene = Scene::new(1e-105, Beam::elastic(1e-300))
+        .foundation(Foundation { law: Linear(1e122), gap: () })
+        .load(plain(1e124));
+    refused(
+        scene,
+        "length at x = 5e-106: expected elements long enough for the cube of their length to be a normal number, found 1e-105",
+    );
+}
+
+#[test]
+fn fields_of_a_beam_whose_curvature_is_below_the_numbers_are_those_of_any_other() {
+    // Powers of two, so that all digits are the same.
+    let at = |length: f64, deflection: f64| {
+        let load = length.powi(-2) / length / length * deflection;
+        let scene = Scene::new(length, Beam::elastic(1.0)).load(plain(load));
+        let problem = Problem::new(scene, Mesh::uniform(3)).expect("a scene without mistakes");
+        let mut memory = HeapWorkspace::new();
+        let solution = problem.solve(&mut memory, &Settings::default()).expect("settings in range");
+        assert_eq!(solution.report().status, Status::Converged);
+        [0.125, 0.25, 0.5, 0.625].map(|x| solution.at(x * length).bending / deflection)
+    };
+    let (near, far) = (at(1.0, 1.0), at(2f64.powi(150), 2f64.powi(-300)));
+    for (near, far) in near.into_iter().zip(far) {
+        assert!((near - far).abs() <= 1e-12 * near.abs(), "{near:e} {far:e}");
+    }
+}
+
+#[test]
+fn fluxes_below_the_normal_numbers_are_said() {
+    let status = |axial: f64, permittivity: f64, load: f64| {
+        let beam = Beam { bending: 1.0, axial, piezo: (), permittivity };
+        let scene = Scene::new(1.0, beam)
+            .load(Load { transverse: 1.0, axial: load, points: () })
+            .potential(Potential { left: 0.0, right: 1e-10 });
+        ends(scene, Mesh::uniform(3), Settings::default()).status
+    };
+    assert_eq!(status(1e5, 1e-280, 1.0), Status::Converged);
+    // The displacement is 1e-317 N/V: what it is rounded to changes the potential.
+    assert_eq!(status(1e5, 1e-307, 1.0), Status::ToleranceBelowFloor);
+    // The stretching is 1e-322 m: that it ends with zero tells nothing of the axial force.
+    assert_eq!(status(1e300, 1.0, 1e-22), Status::ToleranceBelowFloor);
+}
+
+#[test]
 fn an_overflow_is_never_converged() {
     for (stiffness, f) in [(1e-300, 1e300), (1e-308, 1e3)] {
         let scene = Scene::new(1.0, Beam::elastic(stiffness)).load(plain(f));
@@ -250,6 +296,14 @@ fn an_overflow_is_never_converged() {
         let mut memory = HeapWorkspace::new();
         let solution = problem.solve(&mut memory, &Settings::default()).expect("settings in range");
         assert_ne!(solution.report().status, Status::Converged, "xi = {}", solution.at(0.5).bending);
+    }
+    // A prescribed potential at the end of the numbers: between the nodes it is beyond it.
+    for (left, right) in [(f64::MAX, 0.0), (0.0, f64::MAX)] {
+        let scene = beam(5000.0, 1e11, 1e-14, 1e-16)
+            .load(Load { transverse: 1e6, axial: 1.0, points: () })
+            .potential(Potential { left, right });
+        let report = ends(scene, Mesh::uniform(1), Settings::default());
+        assert_ne!(report.status, Status::Converged, "{left:e}, {right:e}");
     }
 }
 

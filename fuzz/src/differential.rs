@@ -35,7 +35,7 @@ enum Way {
 }
 
 #[derive(Arbitrary, Clone, Copy, Debug)]
-struct State {
+pub struct State {
     /// k L^4 / C in parts of 10 decades from 1e-2 on.
     rigidity: u8,
     /// The gap over what the load bends.
@@ -85,18 +85,19 @@ const STATES: f64 = 1e-6;
 /// Nodes of meshes whose elements are a multiple of four.
 const BREAKS: [f64; 2] = [0.25, 0.75];
 
-struct Data<T> {
-    breaks: [T; 2],
-    values: [T; 3],
-    stiffness: T,
-    gap: T,
-    ends: [T; 2],
-    mu: [T; 2],
-    truncation: T,
+#[derive(Clone, Copy, Debug)]
+pub struct Data<T> {
+    pub breaks: [T; 2],
+    pub values: [T; 3],
+    pub stiffness: T,
+    pub gap: T,
+    pub ends: [T; 2],
+    pub mu: [T; 2],
+    pub truncation: T,
 }
 
 impl State {
-    fn data<T: Real>(&self) -> Data<T> {
+    pub fn data<T: Real>(&self) -> Data<T> {
         let truncation = 10f64.powf(f64::from(self.truncation) / 128.0 - 1.0);
         // Both margins of (2.15), for a permittivity and a bending stiffness of 1, are at least 2.
         let most = 2.0 / truncation;

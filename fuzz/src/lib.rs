@@ -9,6 +9,7 @@ mod recursion;
 mod roots;
 mod scene;
 mod scene_file;
+mod units;
 
 // What the library and the program keep to themselves, and an independent look at a solution: the same files.
 #[path = "../../src/cubic.rs"]
@@ -31,15 +32,17 @@ pub use recursion::recursion;
 pub use roots::roots;
 pub use scene::scene;
 pub use scene_file::scene_file;
+pub use units::units;
 
 /// A property of any byte string, which panics where it fails.
 pub type Property = fn(&[u8]);
 
 /// All targets by name.
-pub const TARGETS: [(&str, Property); 5] = [
+pub const TARGETS: [(&str, Property); 6] = [
     ("differential", differential),
     ("recursion", recursion),
     ("roots", roots),
     ("scene", scene),
     ("scene_file", scene_file),
+    ("units", units),
 ];

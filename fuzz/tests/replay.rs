@@ -60,6 +60,11 @@ fn random_pairs() {
     random(piezobeam_fuzz::differential, 1000, 255);
 }
 
+#[test]
+fn random_units() {
+    random(piezobeam_fuzz::units, 5000, 255);
+}
+
 /// The stored scenes with a few bytes changed: what looks random is not even text.
 #[test]
 fn changed_scene_files() {

@@ -323,7 +323,7 @@ impl<T: Real, M: Model<T>, const L: usize> Group<'_, T, M, L> {
             let left = electric::solve::<T, M, true>(scene, places, 0);
             let looked = !electric::present::<T, M>() && <M::Bending as Profile<T>>::Piece::FLAT;
             let lost = nested::unseen(scene, places, 0, &left, residual, settings.stop) > settings.stop;
-            if lost || (!looked && nested::overflown(scene, places, 0).is_some()) {
+            if lost || (!looked && nested::beyond(scene, places, 0, &left, Some(residual)).is_some()) {
                 continue;
             }
             let report = Report {

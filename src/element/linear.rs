@@ -197,8 +197,9 @@ impl<T: Real, M: Model<T>> AxialLoad<T, M> {
             // integral over x of uu F = h^2 integral over t of f(t) integral_0^t uu
             let (t, part) = (T::of(t), span.h() * T::of(weight) * *f);
             total = total + part;
-            stretch = stretch + span.h() * part * flexibility.uu.integral(t);
-            charge = charge + span.h() * part * flexibility.uq.integral(t);
+            // Neither product is far from what the sums are: the load times the length twice may be.
+            stretch = stretch + part * (span.h() * flexibility.uu.integral(t));
+            charge = charge + part * (span.h() * flexibility.uq.integral(t));
         }
         Ok(Self { total: Slot::of(total), stretch: Slot::of(stretch), charge: Slot::of(charge) })
     }
@@ -210,8 +211,8 @@ impl<T: Real, M: Model<T>> AxialLoad<T, M> {
         let (mut total, mut stretch, mut charge) = (T::zero(), T::zero(), T::zero());
         for element in parts {
             let (mean, load) = (element.flexibility.mean(), element.axial);
-            stretch = stretch + load.stretch.get() + total * element.h * mean.uu;
-            charge = charge + load.charge.get() + total * element.h * mean.uq;
+            stretch = stretch + load.stretch.get() + total * (element.h * mean.uu);
+            charge = charge + load.charge.get() + total * (element.h * mean.uq);
             total = total + load.total.get();
         }
         Self { total: Slot::of(total), stretch: Slot::of(stretch), charge: Slot::of(charge) }
@@ -264,9 +265,9 @@ pub(crate) fn current<T: Real, M: Model<T>>(
             square = square + part;
             lever = lever + T::of(t) * part;
         }
-        source.total = element.h * square;
-        let lever = element.h * element.h * lever;
-        (source.stretch, source.charge) = (lever * stretch, lever * charge);
+        let (h, lever) = (element.h, element.h * lever);
+        source.total = h * square;
+        (source.stretch, source.charge) = (lever * (h * stretch), lever * (h * charge));
         return source;
     }
     let mut splits: ArrayVec<T, 6> = ArrayVec::new();
@@ -277,8 +278,8 @@ pub(crate) fn current<T: Real, M: Model<T>>(
         let part = element.h * weight * (element.mu2.at(t) * r * r);
         source.total = source.total + part;
         let (stretch, charge) = element.flexibility.integral(t);
-        source.stretch = source.stretch + element.h * part * stretch;
-        source.charge = source.charge + element.h * part * charge;
+        source.stretch = source.stretch + part * (element.h * stretch);
+        source.charge = source.charge + part * (element.h * charge);
     });
     source
 }

@@ -130,6 +130,10 @@ impl<T: Real, M: Model<T>> Element<T, M> {
         let (beam, foundation) = (model.beam(), model.foundation());
         let (conduction, load) = (model.conduction(), model.load());
 
+        // Forces of a foundation on an element have its square and cube in them: without digits there, none is left in what
+        // balances, and no balance shows it.
+        let what = "elements long enough for the cube of their length to be a normal number";
+        expect(h * h * h >= T::min_positive_value(), "length", Place::At(mid.f64()), what, h)?;
         let stiffness = span.positive(beam.bending, "beam.bending")?;
         let bending = hermite::bending(h, stiffness);
         // An element's stiffness is 12 C / h^3, which has to be a number.

@@ -326,11 +326,13 @@ impl<T: Real, M: Model<T>> Paper<'_, '_, T, M> {
             End::Halted(halt) => halt.into(),
             End::Circles(period) => Status::Cycle { period },
             End::Settled if pulls => Status::FoundationPulls { element: lowest.0 },
-            End::Settled if residual <= stop => match nested::overflown(self.context.model, self.places, 0) {
-                Some(element) => Status::Breakdown { element },
-                None if unseen > stop => Status::ToleranceBelowFloor,
-                None => Status::Converged,
-            },
+            End::Settled if residual <= stop => {
+                match nested::beyond(self.context.model, self.places, 0, &self.node, found.as_ref()) {
+                    Some(element) => Status::Breakdown { element },
+                    None if unseen > stop => Status::ToleranceBelowFloor,
+                    None => Status::Converged,
+                }
+            }
             End::Settled if found.is_some_and(|found| nested::is_rounding(&found)) => {
                 Status::ToleranceBelowFloor
             }

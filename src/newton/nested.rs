@@ -228,17 +228,27 @@ pub(crate) fn is_rounding<T: Real>(residual: &Residual<T>) -> bool {
     residual.relative() <= T::of(FLOOR) * residual.floor()
 }
 
-/// The first element that is beyond the number format: moments may balance where displacements or fluxes are.
-pub(crate) fn overflown<T: Real, M: Model<T>>(
+/// The first element that is beyond the number format: moments may balance where displacements or fluxes are, and where
+/// all moments are below it nothing was balanced.
+pub(crate) fn beyond<T: Real, M: Model<T>>(
     model: &M,
     places: &[Place<T, M>],
     state: usize,
+    left: &Node<T, M>,
+    residual: Option<&Residual<T>>,
 ) -> Option<usize> {
     let ratio = electric::Ratio::of(&places.first()?.element);
-    places.iter().position(|place| !place.is_finite(model, state, &ratio))
+    // No element has the left end for its right node.
+    if !left.is_finite(&ratio) {
+        return Some(0);
+    }
+    let weightless = residual.is_some_and(|residual| residual.size == T::zero());
+    let beyond =
+        |place: &Place<T, M>| !place.is_finite(model, state, &ratio) || (weightless && place.is_bent(state));
+    places.iter().position(beyond)
 }
 
-/// What the moments' balance does not tell: rounding of the potential, of loads below the normal numbers, and of contact
+/// What the moments' balance does not tell: rounding of the potential, of fluxes and loads below the normal numbers, and of contact
 /// forces that outweigh all moments; an end of the beam that is not where it is clamped. Relative as the residual is; of
 /// less than `stop` it may be zero.
 pub(crate) fn unseen<T: Real, M: Model<T>>(
@@ -250,8 +260,8 @@ pub(crate) fn unseen<T: Real, M: Model<T>>(
     stop: T,
 ) -> T {
     let floor = if residual.floor() > T::of(BLIND) { residual.floor() } else { T::zero() };
-    let rounding =
-        electric::rounding(places, left, stop).max(residual.underflow(places.len(), model.length()));
+    let fluxes = electric::rounding(places, left, stop).max(electric::faint(places, left, model.length()));
+    let rounding = fluxes.max(residual.underflow(places.len(), model.length()));
     floor.max(rounding).max(loose(model, places, state))
 }
 
@@ -296,10 +306,8 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
             Ok(_) if self.best.is_some_and(|(_, best)| is_rounding(&best)) => Status::ToleranceBelowFloor,
             Ok(_) => Status::Stagnation,
         };
-        // Where all moments are below the number format nothing was balanced.
-        let weightless = self.best.is_some_and(|(_, best)| best.size == T::zero());
-        let bent = || self.places.iter().position(|place| weightless && place.is_bent(self.current));
-        let status = match overflown(self.context.model, self.places, self.current).or_else(bent) {
+        let best = self.best.as_ref().map(|(_, residual)| residual);
+        let status = match beyond(self.context.model, self.places, self.current, &self.node, best) {
             Some(element) if status == Status::Converged => Status::Breakdown { element },
             _ => status,
         };

@@ -60,8 +60,8 @@ pub enum Status {
     },
     /// The residual is as small as rounding lets it become for this scene, but above `stop`. Or rounding that the
     /// moments' balance does not see is above it, and then is the report's residual and floor: of the potential, over
-    /// the largest one, where P^2 is far above EA eps; of loads below the normal numbers. So after `Converged` neither
-    /// has lost more than `stop`: a potential with eight digits of sixteen left is converged to 1e-7, not to 1e-10.
+    /// the largest one, where P^2 is far above EA eps; of loads and fluxes below the normal numbers. So after
+    /// `Converged` none has lost more than `stop`: a potential with eight digits of sixteen left is converged to 1e-7, not to 1e-10.
     ToleranceBelowFloor,
     /// Only of a [`Method`](crate::Method): it settled on a contact set under which the foundation pulls the beam.
     FoundationPulls {

@@ -104,10 +104,11 @@ fn line(xs: &[f64], ys: &[f64], piece: usize, x: f64) -> [f64; 3] {
     let (Some([x0, x1]), Some([y0, y1])) = (pair(xs, piece), pair(ys, piece)) else {
         return [f64::NAN; 3];
     };
-    let slope = (y1 - y0) / (x1 - x0);
-    // Starting from the nearer end makes the line meet both points exactly.
-    let value = if x - x0 <= x1 - x { y0 + slope * (x - x0) } else { y1 - slope * (x1 - x) };
-    [value, slope, 0.0]
+    let (run, rise) = (x1 - x0, y1 - y0);
+    // Starting from the nearer end makes the line meet both points exactly. A slope may be below the number format where
+    // the values are not.
+    let value = if x - x0 <= x1 - x { y0 + (x - x0) / run * rise } else { y1 - (x1 - x) / run * rise };
+    [value, rise / run, 0.0]
 }
 
 fn pair(numbers: &[f64], index: usize) -> Option<[f64; 2]> {
