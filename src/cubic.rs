@@ -253,6 +253,17 @@ mod tests {
     }
 
     #[test]
+    fn control_values_are_those_of_bernsteins_form() {
+        let cubic = Cubic([0.3, -1.7, 2.9, -0.6]);
+        let [b0, b1, b2, b3] = cubic.control(0.25);
+        for t in [0.0_f64, 0.2, 0.5, 0.9, 1.0] {
+            let s = 1.0 - t;
+            let sum = s * s * (s * b0 + 3.0 * t * b1) + t * t * (3.0 * s * b2 + t * b3);
+            assert!((sum - (cubic.at(t) - 0.25)).abs() < 1e-15, "{t}");
+        }
+    }
+
+    #[test]
     fn three_crossings_are_found_and_touching_is_none() {
         // (t - 0.2)(t - 0.5)(t - 0.7)
         let three = Cubic([-0.07, 0.59, -1.4, 1.0]);

@@ -533,6 +533,14 @@ mod tests {
         }
         assert!((piece.mean() - (3.0 - 1.0 + 0.5 / 3.0 - 7.0 / 4.0)).abs() < 1e-14);
         assert_eq!(Cubic::from_samples([2.0_f64; 4]).constant(), Some(2.0));
+        // One sample that is another is no constant.
+        for odd in 0..4 {
+            let mut samples = [2.0_f64; 4];
+            samples[odd] = 3.0;
+            let piece = Cubic::from_samples(samples);
+            let off = gauss::<4>().into_iter().zip(samples).map(|((z, _), f)| (piece.at(z) - f).abs());
+            assert!(off.fold(0.0, f64::max) < 1e-13, "{samples:?}: {piece:?}");
+        }
         for power in 1..4 {
             let mut cubic = Cubic([2.0, 0.0, 0.0, 0.0]);
             cubic.0[power] = 1.0;

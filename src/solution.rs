@@ -284,10 +284,11 @@ impl<'s, T: Real, M: Model<T>> Solution<'s, T, M> {
                 if strain.abs() > stretch.0.abs() {
                     stretch = (strain, x);
                 }
-                let slope = solved.slope_at_node(x == solved.element.right);
-                if slope.abs() > turn.0.abs() {
-                    turn = (slope, x);
-                }
+            }
+            // The left node is the last one's right node, or a clamp, which does not turn.
+            let (slope, x) = (solved.slope_at_right(), solved.element.right);
+            if slope.abs() > turn.0.abs() {
+                turn = (slope, x);
             }
         }
         if let Some(stiffness) = rigid {
@@ -511,15 +512,9 @@ impl<T: Real, M: Model<T>> Solved<'_, T, M> {
         })
     }
 
-    fn slope_at_node(&self, right: bool) -> T {
-        let h = self.element.h;
-        let gap = self.scene.foundation().gap;
-        if right {
-            self.motion.d.y() + gap.jet(self.element.right, self.mid)[1]
-        } else {
-            let x = self.element.right - h;
-            self.motion.d.y() + self.motion.e.y() + gap.jet(x, self.mid)[1]
-        }
+    /// The slope at the right node.
+    fn slope_at_right(&self) -> T {
+        self.motion.d.y() + self.scene.foundation().gap.jet(self.element.right, self.mid)[1]
     }
 
     pub(crate) fn inverse(&self, x: T) -> Inverse<T> {

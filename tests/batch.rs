@@ -108,6 +108,36 @@ fn soft_scenes_on_one_mesh_go_in_lockstep_and_stiff_ones_alone() {
     as_alone::<_, 8>(&[0.0, 0.0, -1e6, 1e-300].map(|load| soft(1e8, load)), Mesh::uniform(33));
 }
 
+/// A lane without an answer in lockstep is solved alone and has those visits beside.
+fn end_together<M: Model<f64>>(scenes: &[M; 4]) {
+    let mesh = Mesh::uniform(100);
+    let settings = Settings::default();
+    let alone: usize =
+        scenes.iter().map(|scene| fields(scene, mesh, &[]).0.element_visits).max().unwrap_or(0);
+    let mut batch = Batch::<f64, _, 4>::new();
+    let mut work = vec![];
+    batch
+        .solve(scenes, &mesh, &settings, |_, solution| {
+            let report = *solution.expect("a scene").report();
+            assert_eq!(report.status, Status::Converged);
+            work.push((report.iterations, report.element_visits));
+        })
+        .expect("settings");
+    assert!(work.iter().all(|of| *of == work[0]), "{work:?}");
+    assert!(work[0].1 <= 2 * alone, "{work:?}, alone {alone}");
+}
+
+#[test]
+fn soft_scenes_end_in_lockstep() {
+    let loads = [1e6, -1e6, 2e5, 1e4];
+    end_together(&loads.map(|load| soft(1e7, load)));
+    end_together(&loads.map(|load| {
+        Scene::new(1.0, Beam::elastic(5000.0))
+            .foundation(Foundation { law: Linear(1e7), gap: 1e-3 })
+            .load(Load { transverse: load, axial: (), points: () })
+    }));
+}
+
 #[test]
 fn what_cannot_go_in_lockstep_is_solved_alone() {
     let hertz = [1e6, 2e6].map(|load| {

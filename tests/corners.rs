@@ -7,7 +7,7 @@ use common::{fields, halves, named, plain, points, relative, tolerances as tol};
 use piezobeam::{
     Adaptive, Batch, Beam, Conduction, Error, Fields, Foundation, Function, Grazing, HeapWorkspace, History,
     Linear, Load, Mesh, Method, Model, Output, Parameter, PointLoad, Polynomial, Potential, Power, Problem,
-    Reached, Resultants, Scene, SensitivityError, Settings, Solution, Status, Steps, Table,
+    Reached, Resultants, Scene, SensitivityError, Settings, Solution, Status, Steps, StoragePlace, Table,
 };
 
 fn capped(most: usize) -> Settings<f64> {
@@ -101,6 +101,32 @@ fn bounded<M: Model<f64>, const N: usize, const FOUR: usize, const MORE: usize>(
 fn a_bound_holds_also_where_visits_or_memory_end_it() {
     bounded::<_, 10, 40, 45>(&halves(3e14));
     bounded::<_, 50, 200, 210>(&named("rigid").scene);
+}
+
+/// Layers at the clamps that four times the mesh does not resolve either: what a second finer mesh is made for.
+#[test]
+fn a_certificate_with_room_divides_layers_until_its_bound_is_near() {
+    for (k, n) in [(1e10, 5), (1e12, 10), (1e14, 50)] {
+        let scene = Scene::new(1.0, Beam::elastic(5000.0))
+            .foundation(Foundation { law: Linear(k), gap: () })
+            .load(plain(1e6));
+        let problem = Problem::new(scene, Mesh::uniform(n)).expect("a scene");
+        let finest = Problem::new(scene, Mesh::uniform(256 * n)).expect("a scene");
+        let (mut memory, mut other) = (HeapWorkspace::new(), HeapWorkspace::new());
+        let solution = problem.solve(&mut memory, &Settings::default()).expect("settings");
+        let reference = finest.solve(&mut other, &Settings::default()).expect("settings");
+        let error = solution.distance(&reference).expect("meshes that divide each other");
+        let mut places = vec![StoragePlace::default(); 8 * n];
+        let mut found = [(0, 0.0); 2];
+        for (found, room) in found.iter_mut().zip([8 * n, 4 * n]) {
+            let certificate = solution.certify(&mut places[..room], &Settings::default()).expect("memory");
+            *found = (certificate.report.elements, certificate.bending_bound.expect("the theory holds"));
+        }
+        let [(elements, bound), (least, undivided)] = found;
+        assert!((4 * n + 1..=8 * n).contains(&elements) && least == 4 * n, "{elements} {least}");
+        assert!(bound >= error && bound < tol::EFFECTIVITY * error, "{bound:e} of {error:e}");
+        assert!(undivided > tol::EFFECTIVITY * error, "{undivided:e} of {error:e}");
+    }
 }
 
 #[test]
@@ -460,6 +486,12 @@ fn conduction_without_compliance_is_a_foundation_of_its_own() {
     agree(by_differences(&both, Output::Potential(0.5)));
     assert_eq!(zones(held(1.0)), [[0.0, 1.0]]);
     assert!(zones(charged(-1.0)).is_empty());
+    // Wherever there is any of a foundation, the gap is a field.
+    let gaps = |fields: Vec<Fields<f64>>| fields.iter().map(|f| f.gap).collect::<Vec<_>>();
+    assert_eq!(gaps(fields(held(1.0), Mesh::uniform(4), &[0.3]).1), [Some(0.0)]);
+    assert_eq!(gaps(fields(charged(1.0), Mesh::uniform(4), &[0.3]).1), [Some(0.0)]);
+    let free = Scene::new(1.0, beam).load(plain(1.0));
+    assert_eq!(gaps(fields(free, Mesh::uniform(4), &[0.3]).1), [None]);
 }
 
 #[test]

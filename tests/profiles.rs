@@ -5,8 +5,9 @@ mod common;
 
 use common::{fields, fixed, points, relative, tolerances as tol};
 use piezobeam::{
-    Beam, Compliance, Error, Fields, Foundation, Linear, Load, Mesh, Pieces, Place, Polynomial, Profile,
-    Scene, Smooth, Status, Steps, Table, Tabulated,
+    Adaptive, Batch, Beam, BermudezMoreno, Compliance, Conduction, Cubic, Error, Fields, Flat, Foundation,
+    HeapWorkspace, History, Linear, Load, Mesh, Method, Model, Output, Parameter, Pieces, Place, Polynomial,
+    Potential, Power, Problem, Profile, Reached, Scene, Settings, Smooth, Status, Steps, Table, Tabulated,
 };
 use proptest::prelude::*;
 
@@ -128,4 +129,114 @@ fn what_was_not_validated_is_no_number_rather_than_a_panic() {
         let (p, slope) = Tabulated { penetration: x, pressure: y }.pressure(0.0, 0.5, 0.5);
         assert!(p.is_nan() && slope.is_nan());
     }
+}
+
+/// A line with a break, on [0, 2], that insists on what a profile is promised: points on the piece that is meant.
+#[derive(Clone, Copy)]
+struct Strict {
+    breaks: [f64; 1],
+    at_zero: f64,
+    slope: f64,
+}
+
+impl Profile<f64> for Strict {
+    type Piece = Cubic<f64>;
+    type Slot = Flat<f64>;
+    fn value(&self, x: f64, mid: f64) -> f64 {
+        let [at] = self.breaks;
+        let (from, to) = if mid < at { (0.0, at) } else { (at, 2.0) };
+        assert!(mid > from && mid < to, "{mid} is inside no piece");
+        // Rounding of a point in the element beside the break.
+        assert!(x > from - 1e-12 && x < to + 1e-12, "{x} is not on the piece of {mid}");
+        self.at_zero + self.slope * x
+    }
+    fn breaks(&self) -> &[f64] {
+        &self.breaks
+    }
+}
+
+impl Smooth<f64> for Strict {
+    fn jet(&self, x: f64, mid: f64) -> [f64; 3] {
+        [self.value(x, mid), self.slope, 0.0]
+    }
+}
+
+fn strict(at: f64, at_zero: f64, slope: f64) -> Strict {
+    Strict { breaks: [at], at_zero, slope }
+}
+
+/// Everything that can be asked of a scene.
+fn ask<M: Model<f64> + Copy>(scene: M) {
+    let settings = Settings::default();
+    let problem = Problem::new(scene, Mesh::uniform(12)).expect("a scene");
+    let mut memory = HeapWorkspace::new();
+    let mut beam = problem.prepare(&mut memory).expect("memory");
+    assert_eq!(beam.solve(&settings).expect("settings").status, Status::Converged);
+    let parameters = [
+        Parameter::Bending,
+        Parameter::Axial,
+        Parameter::Piezo,
+        Parameter::Permittivity,
+        Parameter::Stiffness,
+        Parameter::Gap,
+        Parameter::Mu1,
+        Parameter::Mu2,
+        Parameter::Transverse,
+        Parameter::AxialLoad,
+        Parameter::Force(0.3),
+    ];
+    for parameter in parameters {
+        if parameter.is_in(&scene) {
+            let tangent = beam.tangent(parameter).expect("a derivative");
+            assert!(points(31, 2.0).iter().all(|&x| tangent.at(x).bending.is_finite()));
+            assert!(tangent.of(Output::ContactForce).is_some_and(f64::is_finite));
+        }
+    }
+    for output in [Output::ContactForce, Output::LeftMoment, Output::Bending(0.9)] {
+        let adjoint = beam.adjoint(output).expect("a derivative");
+        assert!(parameters.iter().filter_map(|&p| adjoint.to(p)).all(f64::is_finite));
+    }
+    beam.grazing().expect("a solution");
+    let solution = beam.last().expect("a solution");
+    assert!(points(31, 2.0).iter().all(|&x| solution.at(x).bending.is_finite()));
+    assert!(solution.resultants().bending_energy > 0.0);
+    assert!(!solution.warnings().is_empty(), "the gap does not vanish at the clamps");
+    let mut finer = HeapWorkspace::new();
+    assert!(solution.certify(&mut finer, &settings).expect("memory").bending_estimate < 1e-2);
+    for method in [Method::Gauss, Method::Elementwise, Method::BermudezMoreno(BermudezMoreno::default())] {
+        beam.solve_by(&method, &settings).expect("settings");
+    }
+    let (mut one, mut two) = (HeapWorkspace::new(), HeapWorkspace::new());
+    let found = Adaptive::new(Mesh::uniform(6), &mut one).solve(&scene, 1e-6, &settings).map(|f| f.reached);
+    assert_eq!(found, Ok(Reached::Tolerance));
+    let mut history = History::new(Mesh::uniform(12), &mut two);
+    for _ in 0..2 {
+        assert!(history.solve(&scene, &settings).is_ok());
+    }
+    let mut batch = Batch::<f64, _, 4>::new();
+    let all = [scene; 4];
+    batch
+        .solve(&all, &Mesh::uniform(12), &settings, |_, solution| assert!(solution.is_ok()))
+        .expect("settings");
+}
+
+#[test]
+fn profiles_are_asked_for_points_of_the_piece_that_is_meant_and_of_no_other() {
+    let beam = Beam {
+        bending: strict(0.3, 5e3, 1e3),
+        axial: strict(0.5, 1e5, 1e4),
+        piezo: strict(0.7, 1e2, 10.0),
+        permittivity: strict(0.9, 1.0, 0.1),
+    };
+    let (stiffness, gap) = (strict(1.1, 1e6, 1e6), strict(1.3, 1e-3, 1e-3));
+    let load = Load { transverse: strict(1.7, 1e5, -6e4), axial: strict(1.9, 1e4, 1e4), points: () };
+    let scene = || Scene::new(2.0, beam).load(load).potential(Potential { left: 1.0, right: 2.0 });
+    let linear = scene().foundation(Foundation { law: Linear(stiffness), gap });
+    ask(linear);
+    let mu = strict(1.5, 1.0, 0.5);
+    let (truncation, potential_truncation) = (1e-2, 0.5);
+    ask(linear.conduction(Conduction { mu1: mu, mu2: (), truncation, potential_truncation }));
+    ask(linear.conduction(Conduction { mu1: (), mu2: mu, truncation, potential_truncation }));
+    let curved = scene().foundation(Foundation { law: Power { stiffness, exponent: 1.5 }, gap });
+    ask(curved.conduction(Conduction { mu1: mu, mu2: mu, truncation, potential_truncation }));
 }

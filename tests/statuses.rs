@@ -412,6 +412,15 @@ fn bad_beams_are_refused_by_field_place_and_value() {
     refused(beam(1.0, 1e204, 1.0, 1e203), &format!("beam.axial at x = 0.5: {kept} 1e204"));
     refused(beam(1.0, 1e-198, 1e-201, 1e277), &format!("beam.permittivity at x = 0.5: {kept} 1e277"));
     refused(beam(1.0, 1e100, 1e-280, 1.0), &format!("beam.piezo at x = 0.5: {kept} 1e-280"));
+    // To the last number: a coupling that is just kept, by P / eps and P / (EA eps), and one that is lost by P / eps alone.
+    let least = f64::MIN_POSITIVE;
+    for scene in [beam(1.0, 1.0, 2.0 * least, 2.0), beam(1.0, 2.0, 4.0 * least, 2.0)] {
+        let mut memory = HeapWorkspace::new();
+        assert!(
+            Problem::new(scene, Mesh::uniform(1)).is_ok_and(|problem| problem.prepare(&mut memory).is_ok())
+        );
+    }
+    refused(beam(1.0, 2.0, 2.0 * least, 4.0), &format!("beam.piezo at x = 0.5: {kept} {:e}", 2.0 * least));
     refused(
         Scene::new(1.0, Beam::elastic(Polynomial(&[1.0, NAN]))),
         "beam.bending[1]: expected a finite number, found NaN",

@@ -370,3 +370,20 @@ impl<T: Real> Pass<T> {
             .then(|| (apart / next.most / less).max(T::of(0.25)).min(T::of(1e2)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_estimate_is_corrected_by_the_next_mesh_where_that_is_much_better() {
+        let pass = |modelled: f64, most: f64, value: f64| Pass { modelled, most, points: [value; COMPARED] };
+        // Off by 0.6 of 2 where 3.6 less is modelled; a 12th is less than the quarter that a correction is at least.
+        let (before, after) = (pass(4.0, 2.0, 1.0), pass(0.4, 2.0, 0.4));
+        let found = before.calibrate(&after).unwrap_or(f64::NAN);
+        assert!((found - 0.25).abs() < 1e-15, "{found}");
+        let found = before.calibrate(&pass(0.4, 0.25, 0.4)).unwrap_or(f64::NAN);
+        assert!((found - 0.6 / 0.25 / 3.6).abs() < 1e-15, "{found}");
+        assert_eq!(before.calibrate(&pass(3.0, 2.0, 0.4)), None, "a quarter better says nothing");
+    }
+}
