@@ -167,7 +167,7 @@ impl<T: Real> Contact<T> {
                 Ok(Self::uniform(touch.stiffness(model, element, scale)))
             }
             Touch::Edge | Touch::Mixed => {
-                let q = q.filter(|_| element.conducts_onto()).map(|q| q());
+                let q = q.filter(|_| element.is_driven(model)).map(|q| q());
                 Self::split(model, element, &motion.cubic(), q.as_ref(), scale, Tangent::Whole)
             }
         }
@@ -193,7 +193,7 @@ impl<T: Real> Contact<T> {
         q: &Cubic<T>,
         scale: T,
     ) -> Result<Self, Fault> {
-        let q = element.conducts_onto().then_some(q);
+        let q = element.is_driven(model).then_some(q);
         Self::split(model, element, &motion.cubic(), q, scale, Tangent::Nondecreasing)
     }
 

@@ -14,7 +14,7 @@ use crate::error::{Error, Place, expect};
 use crate::law::Compliance;
 use crate::profile::{Piece, Profile, Slot, Smooth};
 use crate::quadrature::{POINTS, gauss};
-use crate::real::{Pair, Real};
+use crate::real::{Pair, Real, Sum};
 use crate::scene::{Model, points_at};
 use crate::sweep::pair::Symmetric;
 use hermite::Motion;
@@ -144,9 +144,13 @@ impl<T: Real, M: Model<T>> Element<T, M> {
             load.transverse.value(x, mid)
         })?;
         let (fe, mut fr) = hermite::loads(h, transverse);
-        // Loads at one place may cancel: their sum first.
-        fr += points_at(model, left, right)
-            .fold(T::Vec2::default(), |sum, point| sum + T::Vec2::of(point.force, point.moment));
+        // Loads at one place may cancel: their sum first, and with what is rounded off.
+        let (mut force, mut moment) = (Sum::<T>::default(), Sum::<T>::default());
+        for point in points_at(model, left, right) {
+            force.add(point.force);
+            moment.add(point.moment);
+        }
+        fr += T::Vec2::of(force.value(), moment.value());
         let law = span.not_negative("foundation.stiffness", |x| foundation.law.coefficient(x, mid))?;
         let mu1 = span.not_negative("conduction.mu1", |x| conduction.mu1.value(x, mid))?;
         let mu2 = span.not_negative("conduction.mu2", |x| conduction.mu2.value(x, mid))?;

@@ -7,7 +7,7 @@
 //! alone until they are at rest, with the other edges as they were linearised. The full step that follows takes the
 //! rest along. It alone is judged: what happened in between is no more than a better point to linearise at.
 //!
-//! Under a curved law all that touches changes with each step, and there is nothing to gain. (Measured: twice the visits.)
+//! Under a curved law all that touches changes with each step, and there is little to gain (`docs/speed.md`).
 
 use super::{Count, Goal, Halt, Level, Solve, larger};
 use crate::element::contact::Touch;
@@ -18,14 +18,16 @@ use crate::storage::{Place, Work};
 use arrayvec::ArrayVec;
 use core::ops::Range;
 
-/// Elements on both sides of an edge that are iterated with it.
+/// Elements on both sides of an edge that are iterated with it: one into which it may move, and one that sees it come.
 const MARGIN: usize = 2;
-/// Groups of neighbouring edges at most.
+/// Groups of neighbouring edges at most: more are a beam that touches here and there, not edges on their way.
 const GROUPS: usize = 8;
-/// Steps for one group.
+/// Steps for one group. Most are at rest after four to eight.
 const STEPS: usize = 12;
-/// Change of moments that is rest enough on a coarser mesh.
+/// Change of moments that is rest enough on a coarser mesh, where a state is to be good to 1e-4 ...
 const REST: f64 = 1e-6;
+/// ... and units in the last place that are rest anywhere.
+const UNITS: f64 = 16.0;
 /// How often edges may not come to rest before they are no longer iterated alone.
 const PATIENCE: usize = 3;
 
@@ -35,8 +37,10 @@ pub(super) type Groups = ArrayVec<Range<usize>, GROUPS>;
 /// What became of the edges.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Edges {
-    /// They were at rest before the last full step.
+    /// They were at rest before the last full step ...
     pub(super) rest: bool,
+    /// ... or were not.
+    pub(super) moving: bool,
     /// How often they were not.
     restless: usize,
 }
@@ -44,13 +48,14 @@ pub(super) struct Edges {
 impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
     /// The groups of the contact's edges that are to be iterated alone, that nearer to the meeting point first; none in a
     /// first step, from nothing, nor where that was in vain before.
-    pub(super) fn restless_edges(&self) -> Groups {
+    pub(super) fn contact_edges(&self) -> Groups {
         if !M::Law::LINEAR || self.size == T::zero() || self.edges.restless > PATIENCE {
             return Groups::new();
         }
         let mut groups = self.groups();
-        let from = |group: Option<&Range<usize>>| group.map_or(0, |group| group.start.abs_diff(self.meeting));
-        if from(groups.first()) <= from(groups.last()) {
+        let left = groups.first().map_or(0, |first| self.meeting.saturating_sub(first.end));
+        let right = groups.last().map_or(0, |last| last.start.saturating_sub(self.meeting));
+        if left <= right {
             return groups;
         }
         let mut reversed = Groups::new();
@@ -69,7 +74,7 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
         goal: Goal<T>,
         count: &mut Count,
     ) -> Result<(), Halt> {
-        self.edges.rest = false;
+        (self.edges.rest, self.edges.moving) = (false, false);
         if groups.is_empty() {
             return Ok(());
         }
@@ -78,7 +83,7 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
             work.states[target] = work.states[current];
         }
         let rest = if goal.finest { goal.stop } else { T::of(REST) };
-        let rest = rest.max(T::of(16.0) * T::epsilon());
+        let rest = rest.max(T::of(UNITS) * T::epsilon());
         self.current = target;
         let settled = groups.into_iter().try_fold(true, |all, group| {
             let settled = self.settle_group(group, scale, rest, count)?;
@@ -88,14 +93,17 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
         (self.current, self.located) = (current, false);
         match settled {
             Ok(settled) => {
-                self.edges.rest = settled;
+                (self.edges.rest, self.edges.moving) = (settled, !settled);
                 self.edges.restless += usize::from(!settled);
                 Ok(())
             }
             Err(Halt::Budget) => Err(Halt::Budget),
             Err(_) => {
-                // Where that broke down the full step need not.
+                // Where that broke down the full step need not: from the state that is whole.
                 self.edges.restless = usize::MAX;
+                for Place { work, .. } in self.places.iter_mut() {
+                    work.states[target] = work.states[1 - target];
+                }
                 count.spend(self.places.len())?;
                 self.condense(0..self.places.len(), scale, Solve::State)
             }
@@ -110,7 +118,7 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
         rest: T,
         count: &mut Count,
     ) -> Result<bool, Halt> {
-        let mut changed = group.clone();
+        let (mut changed, mut margin) = (group.clone(), MARGIN);
         for step in 0..STEPS {
             // All is condensed, but perhaps not towards here.
             if step > 0 || !group.contains(&self.meeting) {
@@ -124,25 +132,29 @@ impl<T: Real, M: Model<T>> Level<'_, '_, T, M> {
             if moved.mismatch <= rest * larger(self.size, moved.size) {
                 return Ok(true);
             }
-            match self.span(group, |Place { work, .. }| is_edge(work) || work.touch() != work.swept) {
-                Some(range) => changed = range,
-                None => return Ok(true),
+            // What touches everywhere (`Mixed`) is linear with the potential as it is, on one side of the truncation.
+            let changes = |Place { work, .. }: &Place<T, M>| is_edge(work) || work.touch() != work.swept;
+            let Some(range) = self.span(group.clone(), changes) else { return Ok(true) };
+            // An edge that leaves the group is sought farther and farther.
+            if range.start == group.start || range.end == group.end {
+                margin *= 2;
             }
-            group = self.around(&changed);
+            changed = range;
+            group = self.around(&changed, margin);
         }
         Ok(false)
     }
 
-    /// The elements `range` and some on both sides.
-    fn around(&self, range: &Range<usize>) -> Range<usize> {
-        range.start.saturating_sub(MARGIN)..(range.end + MARGIN).min(self.places.len())
+    /// The elements `range` and `margin` more on both sides.
+    fn around(&self, range: &Range<usize>, margin: usize) -> Range<usize> {
+        range.start.saturating_sub(margin)..(range.end + margin).min(self.places.len())
     }
 
     /// The groups of neighbouring edges; none if they are half of the beam.
     fn groups(&self) -> Groups {
         let mut groups = Groups::new();
         let edges = self.places.iter().enumerate().filter(|(_, place)| is_edge(&place.work));
-        for around in edges.map(|(i, _)| self.around(&(i..i + 1))) {
+        for around in edges.map(|(i, _)| self.around(&(i..i + 1), MARGIN)) {
             if let Some(last) = groups.last_mut()
                 && last.end >= around.start
             {

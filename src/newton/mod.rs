@@ -191,7 +191,7 @@ pub(crate) struct Level<'a, 'b, T: Real, M: Model<T>> {
     located: bool,
     /// Elements whose law the continuation in the stiffness scales.
     scaled: Range<usize>,
-    /// The largest moment after the last step \[N m\]; zero before there was one.
+    /// The largest moment after the last step, or of what is started from \[N m\]; zero from nothing.
     size: T,
     edges: Edges,
 }
@@ -209,7 +209,8 @@ enum Solve<T: Real> {
 /// What an iteration is to reach.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Goal<T> {
-    /// The relative residual; on the finest mesh that by statics, else that of a sweep, and one step more.
+    /// The relative residual; on the finest mesh that by statics, else that of a sweep, and one step more. (Where edges are
+    /// at rest a coarser mesh is left before.)
     pub(crate) stop: T,
     pub(crate) finest: bool,
 }
@@ -354,7 +355,8 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                     self.best = Some((1 - self.current, residual));
                 }
                 // Without an edge of contact that moves the equations are all but linear.
-                let linear = self.edges.rest || short.is_none() && !self.has_edges(&changed);
+                let still = short.is_none() && !self.edges.moving && !self.has_edges(&changed);
+                let linear = self.edges.rest || still;
                 short = Some(match short {
                     _ if linear && !vain => T::of(LINEAR),
                     None => T::of(SHORT),
@@ -363,7 +365,8 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
             }
             let moved = residual.relative();
             // A start is good enough where the edges are at rest and the rest has followed.
-            if !goal.finest && moved <= if self.edges.rest { T::one() } else { stop } {
+            let enough = if self.two_way() { T::of(RENEWED) } else { T::of(FOLLOWED) };
+            if !goal.finest && moved <= if self.edges.rest { enough } else { stop } {
                 return Ok(Outcome::Converged);
             }
             let done = moved <= stop.max(blur);
@@ -433,8 +436,8 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     }
 
     /// One full step, where the elements `changed` have changed; after the edges of the contact by themselves, where these
-    /// may be far from their places. By how much it moved the beam: the change of the moments. The best state is the one
-    /// after the shortest step.
+    /// may be far from their places. By how much it moved the beam: the change of the moments, from where the edges
+    /// came to rest if the best state is kept beside the current one. The best state is the one after the shortest step.
     fn step(
         &mut self,
         changed: &Range<usize>,
@@ -443,14 +446,16 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         count: &mut Count,
     ) -> Result<Residual<T>, Halt> {
         self.locate();
-        let groups = self.restless_edges();
+        let groups = self.contact_edges();
         let toward = groups.first().map_or(self.meeting, |group| group.start + group.len() / 2);
         let swept = self.extent(changed, toward);
         count.spend(swept.len())?;
         self.condense(swept, scale, Solve::State)?;
         self.settle_edges(groups, scale, goal, count)?;
         let residual = self.substitute(false).ok_or(Halt::Breakdown(self.meeting - 1))?;
-        self.size = residual.size;
+        if residual.is_finite() {
+            self.size = residual.size;
+        }
         if self.best.is_none_or(|(_, best)| residual.relative() < best.relative()) {
             self.best = Some((self.current, residual));
         }
@@ -776,8 +781,8 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         -T::Vec2::of(w.value(), theta.value())
     }
 
-    /// From a state that is all but the solution: steps for increments, as long as each leaves a hundredth. A sweep for the
-    /// whole state would leave rounding in it that grows with the number of elements.
+    /// From a state that is all but the solution: steps for increments, as long as each leaves little of what is open. A
+    /// sweep for the whole state would leave rounding in it that grows with the number of elements.
     pub(crate) fn advance(&mut self, stop: T, count: &mut Count) -> Result<Outcome, Halt> {
         count.spend(self.places.len())?;
         let mut open = self.join_nodes();
@@ -785,14 +790,16 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
         let mut before = self.balance(T::one())?;
         loop {
             self.best = Some((self.current, before));
-            let residual = self.increment(open, T::one(), count)?;
+            let stepped = self.increment(open, T::one(), count);
+            let residual = self.tried(stepped)?;
             if residual.relative() < before.relative() {
                 self.best = Some((self.current, residual));
             }
             if residual.relative() <= stop {
                 return Ok(Outcome::Converged);
             }
-            if residual.relative() > T::of(LOST) * before.relative() {
+            let quick = residual.relative() < T::of(QUICK) * before.relative();
+            if !quick {
                 self.keep_best();
                 return Ok(Outcome::Stalled);
             }
@@ -872,6 +879,8 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
     #[inline(never)]
     fn condense(&mut self, swept: Range<usize>, scale: T, solve: Solve<T>) -> Result<(), Halt> {
         self.locate();
+        // Half condensed is not condensed.
+        let fresh = core::mem::replace(&mut self.fresh, false);
         let scale = self.scaling(scale);
         let (mut left, mut right) = (self.context.left, self.context.right);
         if let Solve::Increment { open } = solve {
@@ -897,7 +906,7 @@ impl<'a, 'b, T: Real, M: Model<T>> Level<'a, 'b, T, M> {
                 east = self.absorb::<true>(from_right, east, &right, scale(from_right), step)?;
             }
         }
-        self.fresh = !step && (self.fresh || whole);
+        self.fresh = !step && (fresh || whole);
         Ok(())
     }
 
@@ -1205,6 +1214,9 @@ const FEW: f64 = 1000.0;
 /// Share of what rounding may leave of a residual that is not worth a refinement.
 const LOST: f64 = 0.01;
 
+/// Share of the residual that an increment leaves if another one is as good as a sweep for the whole state.
+const QUICK: f64 = 0.01;
+
 /// Elements from which on the rounding of sweeps is worth a balance before the first of them.
 const FINE: usize = 4000;
 
@@ -1217,8 +1229,15 @@ const NEAR: f64 = 1e-7;
 /// Change of the moments by the first step after which statics is asked whether it was the last ...
 const SHORT: f64 = 1e-4;
 
-/// ... and where no element has an edge of contact in it.
+/// ... and by any step where no element has an edge of contact in it, or all edges are at rest; until once in vain.
 const LINEAR: f64 = 3e-2;
+
+/// Change of the moments with which the rest of the beam may follow edges at rest on a coarser mesh, or in a stage of the
+/// continuation: by all of them. The state after it, not before, is the start for what comes.
+const FOLLOWED: f64 = 1.0;
+
+/// The same where the potential is still that of before the step.
+const RENEWED: f64 = 1e-2;
 
 /// Residual from which the next Newton step leaves its square.
 const QUADRATIC: f64 = 1e-6;

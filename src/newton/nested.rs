@@ -28,7 +28,7 @@ const COARSEST: usize = 40;
 const COARSEST_STIFF: usize = 80;
 /// Meshes at most: 4^16 times the coarsest is more than any memory.
 const MOST_LEVELS: usize = 16;
-/// Step after which a stage of the continuation has done its part ...
+/// Step after which a stage of the continuation has done its part, unless edges at rest say so before ...
 const ROUGH: f64 = 1e-4;
 /// ... and a coarser mesh: what is left to do costs less there.
 const CLOSE: f64 = 1e-4;
@@ -36,7 +36,7 @@ const CLOSE: f64 = 1e-4;
 const STAGE: usize = 15;
 /// Stages of the continuation closer than this factor are not tried.
 const SHORTEST: f64 = 1.2;
-/// Factor between stages of the continuation in the stiffness.
+/// Factor between stages of the continuation in the stiffness; its square follows where one took a single step.
 const STRIDE: f64 = 100.0;
 /// Stiffness k L^4 / C with which the continuation starts: contact is a few boundary layers wide.
 const SOFT: f64 = 1e5;
@@ -164,7 +164,7 @@ pub(crate) struct Answer<T: Real, M: Model<T>> {
     pub(crate) left: Node<T, M>,
     /// Where the condensed parts meet, if they are those of the state.
     pub(crate) meeting: Option<usize>,
-    /// The largest moment \[N m\].
+    /// The largest moment \[N m\]; zero where no history follows.
     pub(crate) size: T,
     /// The foundation was taken as one that is rigid to the elements.
     pub(crate) rigid: bool,
