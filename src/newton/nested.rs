@@ -374,7 +374,9 @@ pub(crate) fn solve<T: Real, M: Model<T>>(
         // The share was spent on nothing but rounding: the contact is found.
         report.status = Status::ToleranceBelowFloor;
     }
-    if !rigid || report.is_solved() || most < 2 * share {
+    // Where rounding is all that there is, nothing is solved.
+    let solved = report.is_solved() && report.floor <= T::of(BLIND);
+    if !rigid || solved || most < 2 * share {
         return Ok(answer);
     }
     count.most_visits = most;
