@@ -4,9 +4,10 @@
 
 mod common;
 
-use common::{Shape, fixed, points, solved, tolerances as tol};
+use common::{Shape, fields, fixed, halves, plain, points, relative, solved, tolerances as tol};
 use piezobeam::{
-    Beam, Foundation, HeapWorkspace, Law, Load, Mesh, Model, Power, Problem, Scene, Settings, Status,
+    Beam, Compliance, Fields, Foundation, HeapWorkspace, Law, Linear, Load, Mesh, Model, Power, Problem,
+    Report, Scene, Settings, Status, Steps,
 };
 use proptest::prelude::*;
 
@@ -28,17 +29,19 @@ struct Hard {
 
 impl Hard {
     fn scene(&self) -> impl Model<f64> + use<> {
-        let Self { length, bending, stiffness, exponent, .. } = *self;
+        self.on(Power { stiffness: self.stiffness, exponent: self.exponent })
+    }
+
+    /// The same on a foundation with the law `law`.
+    fn on<W: Compliance<f64> + Copy>(&self, law: W) -> impl Model<f64> + use<W> {
+        let Self { length, bending, .. } = *self;
         // f L^4 / (384 C) is what a clamped beam bends.
         let unit = 384.0 * bending / length.powi(3);
         let loads = self.bends.iter().map(|b| vec![b * unit]).collect();
         let gap = self.gap.iter().enumerate().map(|(i, c)| c * length / length.powi(i as i32)).collect();
         let breaks = self.breaks.iter().map(|x| x * length).collect();
         Scene::new(length, Beam::elastic(bending))
-            .foundation(Foundation {
-                law: Power { stiffness, exponent },
-                gap: Shape::Pieces { breaks: vec![], polynomials: vec![gap] },
-            })
+            .foundation(Foundation { law, gap: Shape::Pieces { breaks: vec![], polynomials: vec![gap] } })
             .load(Load { transverse: Shape::Pieces { breaks, polynomials: loads }, axial: (), points: () })
     }
 
@@ -91,8 +94,8 @@ fn hard(rigidity: std::ops::Range<f64>) -> impl Strategy<Value = Hard> {
 }
 
 /// Solved, nowhere pulled, and with bounded work.
-fn is_found(hard: &Hard) -> Result<(), TestCaseError> {
-    solved(hard.scene(), hard.mesh(), |s| {
+fn is_found<M: Model<f64>>(hard: &Hard, scene: M) -> Result<(), TestCaseError> {
+    solved(scene, hard.mesh(), |s| {
         let report = *s.report();
         if report.status == Status::ToleranceBelowFloor {
             prop_assert!(report.residual <= tol::FLOORS * report.floor, "{:?}", report);
@@ -117,12 +120,43 @@ proptest! {
 
     #[test]
     fn a_foundation_of_any_stiffness_is_solved(hard in hard(-4.0..12.0)) {
-        is_found(&hard)?;
+        is_found(&hard, hard.scene())?;
     }
 
     #[test]
     fn a_foundation_that_is_all_but_rigid_is_solved(hard in hard(12.0..16.0)) {
-        is_found(&hard)?;
+        is_found(&hard, hard.scene())?;
+    }
+
+    // Under a linear law the contact's edges are iterated alone within a step, which a power of one does not know.
+    #[test]
+    fn a_linear_foundation_of_any_stiffness_is_solved_as_by_full_steps(hard in hard(-4.0..16.0)) {
+        let linear = hard.on(Linear(hard.stiffness));
+        is_found(&hard, linear)?;
+        let x = points(20, hard.length);
+        let bent = |fields: &[Fields<f64>]| fields.iter().map(|f| f.bending).collect::<Vec<f64>>();
+        let (report, alone) = fields(hard.on(Linear(hard.stiffness)), hard.mesh(), &x);
+        let (other, full) = fields(hard.on(Power { stiffness: hard.stiffness, exponent: 1.0 }), hard.mesh(), &x);
+        if [report, other].iter().all(|report| report.status == Status::Converged) {
+            let error = relative(&bent(&alone), &bent(&full));
+            prop_assert!(error <= tol::ALONE, "{error:e} {report:?} {other:?}");
+        }
+    }
+}
+
+#[test]
+fn edges_alone_take_few_full_steps() {
+    for k in [1e8, 1e12, 1e16] {
+        for n in [100, 1000] {
+            let steps = |report: Report<f64>| report.iterations;
+            let alone = solved(halves(k), Mesh::uniform(n), |s| *s.report());
+            let full = Scene::new(1.0, Beam::elastic(5000.0))
+                .foundation(Foundation { law: Power { stiffness: k, exponent: 1.0 }, gap: () })
+                .load(plain(Steps { breaks: &[0.5], values: &[1e6, -1e6] }));
+            let full = solved(full, Mesh::uniform(n), |s| *s.report());
+            assert!(alone.status == Status::Converged && full.status == Status::Converged, "{k:e} {n}");
+            assert!(steps(alone) <= tol::FULL_STEPS && 2 * steps(alone) <= steps(full) + 2, "{k:e} {n}");
+        }
     }
 }
 
