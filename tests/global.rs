@@ -4,10 +4,10 @@
 
 mod common;
 
-use common::{Shape, fields, fixed, halves, plain, points, relative, solved, tolerances as tol};
+use common::{Shape, fixed, halves, plain, points, relative, solved, tolerances as tol};
 use piezobeam::{
-    Beam, Compliance, Fields, Foundation, HeapWorkspace, Law, Linear, Load, Mesh, Model, Power, Problem,
-    Report, Scene, Settings, Status, Steps,
+    Beam, Compliance, Foundation, HeapWorkspace, Law, Linear, Load, Mesh, Model, Power, Problem, Report,
+    Scene, Settings, Status, Steps, Warning,
 };
 use proptest::prelude::*;
 
@@ -115,6 +115,15 @@ fn is_found<M: Model<f64>>(hard: &Hard, scene: M) -> Result<(), TestCaseError> {
     })
 }
 
+/// Bending at `x`, if the solve converged; not of a foundation that was taken as rigid: the penetration is another there.
+fn ends<M: Model<f64>>(scene: M, mesh: Mesh<'_, f64>, x: &[f64]) -> Option<Vec<f64>> {
+    solved(scene, mesh, |s| {
+        let rigid = s.warnings().iter().any(|warning| matches!(warning, Warning::Rigid { .. }));
+        let sound = s.report().status == Status::Converged && !rigid;
+        sound.then(|| x.iter().map(|&x| s.at(x).bending).collect())
+    })
+}
+
 proptest! {
     #![proptest_config(fixed(2000))]
 
@@ -131,15 +140,14 @@ proptest! {
     // Under a linear law the contact's edges are iterated alone within a step, which a power of one does not know.
     #[test]
     fn a_linear_foundation_of_any_stiffness_is_solved_as_by_full_steps(hard in hard(-4.0..16.0)) {
-        let linear = hard.on(Linear(hard.stiffness));
-        is_found(&hard, linear)?;
+        let hard = Hard { exponent: 1.0, ..hard };
+        is_found(&hard, hard.on(Linear(hard.stiffness)))?;
         let x = points(20, hard.length);
-        let bent = |fields: &[Fields<f64>]| fields.iter().map(|f| f.bending).collect::<Vec<f64>>();
-        let (report, alone) = fields(hard.on(Linear(hard.stiffness)), hard.mesh(), &x);
-        let (other, full) = fields(hard.on(Power { stiffness: hard.stiffness, exponent: 1.0 }), hard.mesh(), &x);
-        if [report, other].iter().all(|report| report.status == Status::Converged) {
-            let error = relative(&bent(&alone), &bent(&full));
-            prop_assert!(error <= tol::ALONE, "{error:e} {report:?} {other:?}");
+        let alone = ends(hard.on(Linear(hard.stiffness)), hard.mesh(), &x);
+        let full = ends(hard.scene(), hard.mesh(), &x);
+        if let (Some(alone), Some(full)) = (alone, full) {
+            let error = relative(&alone, &full);
+            prop_assert!(error <= tol::ALONE, "{error:e}");
         }
     }
 }
