@@ -297,7 +297,7 @@ pub fn departure<T: Real, M: Model<T>>(solution: &Solution<'_, T, M>) -> Departu
             for ([t, weight], f) in GAUSS.into_iter().zip(fields) {
                 let x = x0 + span * t;
                 let curvature = f.moment.f64() / beam.bending.value(number(x), mid).f64();
-                resolved = resolved && curvature.is_finite();
+                resolved = resolved && (curvature * length * length).is_finite();
                 turn += weight * span * curvature;
                 // Rounding of the moments bends, too.
                 sag += weight * span * (drift * length / beam.bending.value(number(x), mid).f64()) * length;
