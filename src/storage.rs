@@ -7,7 +7,9 @@
 use crate::electric::Ratio;
 use crate::element::Element;
 use crate::element::contact::Touch;
+use crate::element::hermite::Motion;
 use crate::element::linear::Flexibility;
+use crate::law::Compliance;
 use crate::profile::{Piece, Profile, Room, Slot};
 use crate::real::{Field, Pair, Real};
 use crate::scene::Model;
@@ -199,7 +201,8 @@ impl<T: Real, M: Model<T>> Place<T, M> {
         let (slope, h) = (self.element.deforming_force(e).y() / self.element.bending.yy, self.element.h);
         let bending = d.x().abs() + d.y().abs() + slope.abs() * (T::one() + h + T::one() / h);
         let sum = bending + self.work.node.size(ratio) + self.gradients(model, e, ratio);
-        (sum * T::of(1e8)).is_finite() && (!Touch::possible::<T, M>() || self.has_finite_forces(e))
+        let forces = || self.has_finite_forces(e) && self.has_finite_pressures(model, state);
+        (sum * T::of(1e8)).is_finite() && (!Touch::possible::<T, M>() || forces())
     }
 
     /// Are load, shear and moment within a 64th of the largest number? A pressure is larger than the load somewhere,
@@ -207,6 +210,17 @@ impl<T: Real, M: Model<T>> Place<T, M> {
     fn has_finite_forces(&self, e: T::Vec2) -> bool {
         let (held, most) = (self.element.deforming_force(e), T::max_value() / T::of(64.0));
         self.element.fr.x().abs() <= self.element.h * most && held.x().abs() + held.y().abs() <= most
+    }
+
+    /// So of the pressure at both nodes: over a short element its force is a number where it is none itself.
+    fn has_finite_pressures(&self, model: &M, state: usize) -> bool {
+        let (element, law, most) = (&self.element, model.foundation().law, T::max_value() / T::of(64.0));
+        let State { e, d } = self.work.states[state];
+        let eta = Motion::new(element.h, e, d).cubic();
+        [T::zero(), T::one()].into_iter().all(|t| {
+            let r = eta.at(t);
+            r <= T::zero() || law.pressure(element.law.at(t), element.x(t), r).0 <= most
+        })
     }
 
     /// Sizes of curvature, u' and q' by the coefficients at both ends of the element, where profiles may be far from

@@ -699,6 +699,19 @@ fn a_load_at_the_end_of_the_numbers_is_a_breakdown_on_a_foundation() {
 }
 
 #[test]
+fn a_pressure_beyond_the_numbers_is_a_breakdown_also_where_its_force_is_none() {
+    // Lengths of 1e-59 m: the pressure times one is 1e249 N.
+    let two = |exponent: i32| 2.0_f64.powi(exponent);
+    let status = |stiffness: f64, bending: f64| {
+        let foundation = Foundation { law: Linear(stiffness), gap: -0.01 * two(255) };
+        let scene = Scene::new(two(-195), Beam::elastic(bending)).foundation(foundation);
+        ends(scene.load(plain(0.0)), Mesh::uniform(10), Settings::default()).status
+    };
+    assert!(matches!(status(two(804), 0.1 * two(24)), Status::Breakdown { .. }));
+    assert_eq!(status(two(704), 0.1 * two(-76)), Status::Converged);
+}
+
+#[test]
 fn loads_that_cancel_leave_the_rest_its_digits() {
     // Moments 1e13 times those of the load between the nodes.
     let bent = |moment: f64| {
