@@ -7,7 +7,6 @@
 use crate::electric::Ratio;
 use crate::element::Element;
 use crate::element::contact::Touch;
-use crate::element::hermite::Motion;
 use crate::element::linear::Flexibility;
 use crate::law::Compliance;
 use crate::profile::{Piece, Profile, Room, Slot};
@@ -216,11 +215,8 @@ impl<T: Real, M: Model<T>> Place<T, M> {
     fn has_finite_pressures(&self, model: &M, state: usize) -> bool {
         let (element, law, most) = (&self.element, model.foundation().law, T::max_value() / T::of(64.0));
         let State { e, d } = self.work.states[state];
-        let eta = Motion::new(element.h, e, d).cubic();
-        [T::zero(), T::one()].into_iter().all(|t| {
-            let r = eta.at(t);
-            r <= T::zero() || law.pressure(element.law.at(t), element.x(t), r).0 <= most
-        })
+        let fits = |t: T, r: T| r <= T::zero() || law.pressure(element.law.at(t), element.x(t), r).0 <= most;
+        fits(T::zero(), d.x()) && fits(T::one(), d.x() - element.h * d.y() + e.x())
     }
 
     /// Sizes of curvature, u' and q' by the coefficients at both ends of the element, where profiles may be far from
