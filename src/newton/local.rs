@@ -22,7 +22,7 @@ use core::ops::Range;
 const MARGIN: usize = 2;
 /// Groups of neighbouring edges at most: more are a beam that touches here and there, not edges on their way.
 const GROUPS: usize = 8;
-/// Steps for one group. Most are at rest after four to eight.
+/// Steps for one group: some to find an edge that is far off, as the margin doubles, then Newton's few.
 const STEPS: usize = 12;
 /// Change of moments that is rest enough on a coarser mesh, where a state is to be good to 1e-4 ...
 const REST: f64 = 1e-6;
